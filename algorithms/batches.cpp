@@ -24,14 +24,14 @@ struct Batch {
 
 class BatchRun {
 public:
-    BatchRun(Pipeline& pipeline, const Frame* frame, std::optional<std::span<const BodyPair>> given);
+    BatchRun(Pipeline& pipeline, const FrameInput* input, std::optional<std::span<const BodyPair>> given);
 
     FrameResult run(std::uint64_t batches);
     /// After run(): whether all pairs and contacts fit into the current buffers at once.
     bool fits() const { return fits_; }
 
 private:
-    void search(const Frame* frame);
+    void search(const FrameInput* input);
     void split(const Batch& batch, std::uint64_t ways);
     void split_items(const Batch& batch, std::uint64_t ways);
     void run_batch(const Batch& batch);
@@ -49,7 +49,8 @@ private:
     bool fits_ = false;
 };
 
-BatchRun::BatchRun(Pipeline& pipeline, const Frame* frame, std::optional<std::span<const BodyPair>> given)
+BatchRun::BatchRun(Pipeline& pipeline, const FrameInput* input,
+                   std::optional<std::span<const BodyPair>> given)
     : pipeline_(pipeline) {
     const auto least = [&](const auto& setting) {
         return static_cast<std::uint64_t>(pipeline.settings[setting]);
@@ -58,7 +59,7 @@ BatchRun::BatchRun(Pipeline& pipeline, const Frame* frame, std::optional<std::sp
     if (given)
         pairs_.assign(given->begin(), given->end());
     else
-        search(frame);
+        search(input);
     // The sizes that the frame needs, as counted by the walk that did not fit.
     const auto pairs = std::max(pipeline.status.counter(STATUS_PAIRS), least(parameters::pair_capacity));
     const auto contacts =
@@ -67,13 +68,13 @@ BatchRun::BatchRun(Pipeline& pipeline, const Frame* frame, std::optional<std::sp
 }
 
 /// Finds all body pairs of the frame, on the device or the host.
-void BatchRun::search(const Frame* frame) {
+void BatchRun::search(const FrameInput* input) {
     if (pipeline_.body_pairs->searched()) {
         pipeline_.status.begin(0);
         pipeline_.body_pairs->launch(pipeline_.status);
         pipeline_.status.read();
     }
-    pairs_ = pipeline_.body_pairs->list(frame, pipeline_.status);
+    pairs_ = pipeline_.body_pairs->list(input, pipeline_.status);
 }
 
 std::uint32_t BatchRun::items_of(const Batch& batch) const {
@@ -217,9 +218,9 @@ FrameResult BatchRun::run(std::uint64_t batches) {
 
 } // namespace
 
-FrameResult run_in_batches(Pipeline& pipeline, const Frame* frame,
+FrameResult run_in_batches(Pipeline& pipeline, const FrameInput* input,
                            std::optional<std::span<const BodyPair>> given, std::uint64_t& batches) {
-    BatchRun run(pipeline, frame, given);
+    BatchRun run(pipeline, input, given);
     auto result = run.run(batches);
     batches = run.fits() ? 1 : result.batches;
     return result;

@@ -33,6 +33,21 @@ void check_arithmetic(const Settings& settings, const DeviceInfo& info) {
                         settings.text("decision"), info.id));
 }
 
+/// Throws InputError if other settings do not fit motion=linear.
+void check_motion_settings(const Settings& settings) {
+    if (settings[parameters::motion] != Motion::linear) return;
+    if (is_published(settings))
+        throw InputError("setting motion=linear does not go with residency=published, whose code bounds one "
+                         "frame; leave residency and preset out");
+    const bool contacting =
+        has_pairs(settings[parameters::output]) && settings[parameters::contact_rule] != ContactRule::none;
+    if (contacting && settings[parameters::decision] != DecisionPrecision::exact)
+        throw InputError(fmt::format("setting motion=linear finds pairs that do not meet in the frame, which "
+                                     "decision={} does not leave out of contacts exactly; choose "
+                                     "decision=exact or contact_rule=none",
+                                     settings.text("decision")));
+}
+
 /// "host + opencl:0"
 std::string names_of(std::span<Device* const> devices) {
     std::vector<std::string> names;
@@ -56,20 +71,49 @@ void Session::check_pairs(std::optional<std::span<const BodyPair>> body_pairs) c
                                          pair.a));
 }
 
-FrameResult Session::run_among(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) {
-    set_threads();
-    check_pairs(body_pairs);
-    auto result = origin_ == Eigen::Vector3d::Zero() ? do_run(frame, body_pairs)
-                                                     : do_run(counted_from(origin_, frame), body_pairs);
-    return finished(std::move(result));
+void Session::check_motion(bool has_next) const {
+    const bool needs_next = settings()[parameters::motion] == Motion::linear;
+    if (needs_next && !has_next)
+        throw InputError("setting motion=linear needs the frame's successor; call run(frame, next)");
+    if (!needs_next && has_next)
+        throw InputError("run() got a frame's successor; set motion=linear, or call run(frame)");
 }
 
-FrameResult Session::run_among(const DeviceFrame& frame,
+FrameResult Session::run_among(const FrameInput& input, std::optional<std::span<const BodyPair>> body_pairs) {
+    set_threads();
+    check_pairs(body_pairs);
+    check_motion(input.next != nullptr);
+    if (input.next == nullptr || input.frame.skipped == input.next->skipped)
+        return run_checked(input, body_pairs);
+    auto frame = input.frame;
+    frame.skipped = skipped_in_either(input.frame.skipped, input.next->skipped);
+    return run_checked({frame, input.next}, body_pairs);
+}
+
+FrameResult Session::run_checked(const FrameInput& input,
+                                 std::optional<std::span<const BodyPair>> body_pairs) {
+    if (input.next != nullptr) check_successor(input.frame, *input.next);
+    if (origin_ == Eigen::Vector3d::Zero()) return finished(do_run(input, body_pairs));
+    const auto frame = counted_from(origin_, input.frame);
+    if (input.next == nullptr) return finished(do_run(frame, body_pairs));
+    const auto next = counted_from(origin_, *input.next);
+    return finished(do_run({frame, &next}, body_pairs));
+}
+
+FrameResult Session::run_among(const DeviceFrameInput& input,
                                std::optional<std::span<const BodyPair>> body_pairs) {
     set_threads();
     check_pairs(body_pairs);
-    check_fits(*scene_, frame);
-    return finished(do_run_device_input(frame, body_pairs));
+    check_motion(input.next != nullptr);
+    check_fits(*scene_, input.frame);
+    if (input.next == nullptr || input.frame.skipped == input.next->skipped) {
+        if (input.next != nullptr) check_fits(*scene_, *input.next);
+        return finished(do_run_device_input(input, body_pairs));
+    }
+    check_fits(*scene_, *input.next);
+    auto frame = input.frame;
+    frame.skipped = skipped_in_either(input.frame.skipped, input.next->skipped);
+    return finished(do_run_device_input({frame, input.next}, body_pairs));
 }
 
 FrameResult Session::finished(FrameResult result) const {
@@ -78,23 +122,11 @@ FrameResult Session::finished(FrameResult result) const {
     return result;
 }
 
-FrameResult Session::do_run_device_input(const DeviceFrame&, std::optional<std::span<const BodyPair>>) {
+FrameResult Session::do_run_device_input(const DeviceFrameInput&, std::optional<std::span<const BodyPair>>) {
     const auto* const why = devices().size() > 1
                                 ? "several devices share a frame, which the host partitions; name one device"
                                 : "residency=published converts every frame on the host; leave it out";
     throw InputError(fmt::format("{}: {}, or give the frame in the host's memory", names_of(devices()), why));
-}
-
-FrameResult Session::run(const DeviceFrame& frame) { return run_among(frame, std::nullopt); }
-
-FrameResult Session::run(const DeviceFrame& frame, std::span<const BodyPair> body_pairs) {
-    return run_among(frame, body_pairs);
-}
-
-FrameResult Session::run(const Frame& frame) { return run_among(frame, std::nullopt); }
-
-FrameResult Session::run(const Frame& frame, std::span<const BodyPair> body_pairs) {
-    return run_among(frame, body_pairs);
 }
 
 void Traversal::do_fit(Settings&, const DeviceInfo&, const Scene*) const {}
@@ -125,6 +157,7 @@ Settings Traversal::fitted(const Settings& settings, const DeviceInfo& info, con
                 "setting order=canonical does not go with residency=published, which sorts on the "
                 "host; leave it out");
     }
+    check_motion_settings(settings);
     do_fit(fitting, info, scene);
     if (fitting[tandem::parameters::group_size] == 0)
         fitting.set(tandem::parameters::group_size(std::min<std::int64_t>(128, info.max_group_size)));
@@ -166,6 +199,10 @@ std::unique_ptr<Session> Traversal::prepare(Device& device, const Scene& scene, 
             fmt::format("{} with residency=published cannot share a frame between ranks: the paper's "
                         "data path has one device; leave residency and preset out",
                         name()));
+    if (settings[tandem::parameters::motion] == Motion::linear)
+        throw InputError(
+            "setting motion=linear does not go with ranks of a job, which exchange bodies of one "
+            "frame; name several devices of one process, or leave motion out");
     if (settings[tandem::parameters::broad] != Broad::device)
         throw InputError(
             fmt::format("setting broad={} does not go with ranks of a job, none of which has all "

@@ -30,10 +30,10 @@ void ResidentSession::upload_vertices(const Frame& frame) {
 
 void ResidentSession::do_reset() { batches_ = 1; }
 
-FrameResult ResidentSession::do_run_device_input(const DeviceFrame& frame,
+FrameResult ResidentSession::do_run_device_input(const DeviceFrameInput& input,
                                                  std::optional<std::span<const BodyPair>> body_pairs) {
     if (!pack_) pack_ = std::make_unique<PackStage>(*pipeline_.bodies, pipeline_.shape);
-    return run_input({.device = &frame, .body_pairs = body_pairs});
+    return run_input({.device = &input, .body_pairs = body_pairs});
 }
 
 /// Updates bodies and hierarchy to the frame. Fixed bodies are included unless an earlier frame has updated
@@ -42,15 +42,16 @@ void ResidentSession::refresh(const Input& input) {
     const bool all = std::exchange(stale_, true);
     if (input.host != nullptr) {
         if (poses_)
-            poses_->launch(*input.host, all);
+            poses_->launch(input.host->frame, all);
         else
             pipeline_.bodies->update_poses(*input.host, all);
         if (!std::exchange(is_uploaded_, false)) pipeline_.bodies->update_deformed(*input.host);
-        pipeline_.stages.hierarchy->refit(*input.host, all);
+        pipeline_.stages.hierarchy->refit(input.host->frame, all);
         return;
     }
     pack_->launch(*input.device, origin(), pipeline_.status.buffer());
-    pipeline_.stages.hierarchy->refit({.poses = {}, .deformed = {}, .skipped = input.device->skipped}, all);
+    pipeline_.stages.hierarchy->refit({.poses = {}, .deformed = {}, .skipped = input.device->frame.skipped},
+                                      all);
 }
 
 void ResidentSession::find_body_pairs(const Input& input) {

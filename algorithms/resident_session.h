@@ -46,16 +46,17 @@ public:
 private:
     /// The arguments of run(): a frame in the host's memory or in the device's, and body pairs.
     struct Input {
-        const Frame* host = nullptr;
-        const DeviceFrame* device = nullptr;
+        const FrameInput* host = nullptr;
+        const DeviceFrameInput* device = nullptr;
         std::optional<std::span<const BodyPair>> body_pairs{};
     };
 
     void do_reset() override;
-    FrameResult do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) override {
-        return run_input({.host = &frame, .body_pairs = body_pairs});
+    FrameResult do_run(const FrameInput& input,
+                       std::optional<std::span<const BodyPair>> body_pairs) override {
+        return run_input({.host = &input, .body_pairs = body_pairs});
     }
-    FrameResult do_run_device_input(const DeviceFrame& frame,
+    FrameResult do_run_device_input(const DeviceFrameInput& input,
                                     std::optional<std::span<const BodyPair>> body_pairs) override;
     void do_count_work(bool on) override { pipeline_.count(on); }
     std::span<Device* const> do_devices() const override { return devices_; }

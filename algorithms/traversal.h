@@ -2,7 +2,7 @@
 #pragma once
 
 #include "algorithms/answer/frame_result.h"
-#include "algorithms/device_frame.h"
+#include "algorithms/bodies/frame_input.h"
 #include "algorithms/parameters/parameter.h"
 #include "backends/device.h"
 #include "scenes/scene.h"
@@ -39,18 +39,46 @@ public:
     void reset() { do_reset(); }
     /// Finds the candidate pairs of `frame` and their contacts, and waits for their numbers. Coordinates must
     /// pass check_range (bodies/range.h). The session finds the body pairs, according to setting broad.
-    FrameResult run(const Frame& frame);
+    /// Throws InputError with motion=linear, which needs the frame's successor.
+    FrameResult run(const Frame& frame) { return run_among(frame, std::nullopt); }
     /// The same for these body pairs, at most 2^32 - 1. Throws InputError for a pair of a body with itself
     /// unless setting self allows such pairs.
-    FrameResult run(const Frame& frame, std::span<const BodyPair> body_pairs);
+    FrameResult run(const Frame& frame, std::span<const BodyPair> body_pairs) {
+        return run_among(frame, body_pairs);
+    }
+    /// With motion=linear: the candidate pairs are those that could meet while the bodies move from `frame`
+    /// to `next`. Deformable vertices move on straight lines. Rigid bodies translate on straight lines and
+    /// rotate by the shorter angle at constant speed. Contacts are those of `frame`. Throws InputError if
+    /// `next` has other bodies or vertices, or with motion=none.
+    FrameResult run(const Frame& frame, const Frame& next) {
+        return run_among(FrameInput(frame, &next), std::nullopt);
+    }
+    /// The same for these body pairs, which must contain all that could meet on the way.
+    FrameResult run(const Frame& frame, const Frame& next, std::span<const BodyPair> body_pairs) {
+        return run_among(FrameInput(frame, &next), body_pairs);
+    }
+    /// One of the above, for an input with or without a successor.
+    FrameResult run(const FrameInput& input) { return run_among(input, std::nullopt); }
+    FrameResult run(const FrameInput& input, std::span<const BodyPair> body_pairs) {
+        return run_among(input, body_pairs);
+    }
     /// The same for a frame in the memory of the session's only device. The answer has the bits of the same
     /// frame in the host's memory. The device finds body pairs, independent of setting broad. Throws
     /// InputError if a buffer is missing or too small, and as for the host's memory if coordinates do not
     /// pass check_range or a rotation has zero length. Throws InputError also if the host needs the numbers:
     /// with several devices, residency=published, placement=exact, or a device without double.
-    FrameResult run(const DeviceFrame& frame);
+    FrameResult run(const DeviceFrame& frame) { return run_among(frame, std::nullopt); }
     /// The same for these body pairs, at most 2^32 - 1.
-    FrameResult run(const DeviceFrame& frame, std::span<const BodyPair> body_pairs);
+    FrameResult run(const DeviceFrame& frame, std::span<const BodyPair> body_pairs) {
+        return run_among(frame, body_pairs);
+    }
+    /// With motion=linear, as for frames in the host's memory.
+    FrameResult run(const DeviceFrame& frame, const DeviceFrame& next) {
+        return run_among(DeviceFrameInput(frame, &next), std::nullopt);
+    }
+    FrameResult run(const DeviceFrame& frame, const DeviceFrame& next, std::span<const BodyPair> body_pairs) {
+        return run_among(DeviceFrameInput(frame, &next), body_pairs);
+    }
     /// Switches to kernels that count their work and make no contacts, or back. Such runs are never timed.
     void count_work(bool on) { do_count_work(on); }
     /// The devices of this process; valid as long as the session.
@@ -68,15 +96,19 @@ private:
     /// Called in every run, because sessions may share a device with other settings.
     void set_threads() const;
     void check_pairs(std::optional<std::span<const BodyPair>> body_pairs) const;
-    FrameResult run_among(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs);
-    FrameResult run_among(const DeviceFrame& frame, std::optional<std::span<const BodyPair>> body_pairs);
+    void check_motion(bool has_next) const;
+    FrameResult run_among(const FrameInput& input, std::optional<std::span<const BodyPair>> body_pairs);
+    FrameResult run_among(const DeviceFrameInput& input, std::optional<std::span<const BodyPair>> body_pairs);
+    FrameResult run_checked(const FrameInput& input, std::optional<std::span<const BodyPair>> body_pairs);
     /// Completes a frame's result, and checks the devices' guards.
     FrameResult finished(FrameResult result) const;
 
     virtual void do_reset() = 0;
-    virtual FrameResult do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) = 0;
+    /// `input` has a successor with motion=linear only, which skips the same tetrahedra.
+    virtual FrameResult do_run(const FrameInput& input,
+                               std::optional<std::span<const BodyPair>> body_pairs) = 0;
     /// Runs a checked frame in the device's memory. Throws InputError unless a session overrides it.
-    virtual FrameResult do_run_device_input(const DeviceFrame& frame,
+    virtual FrameResult do_run_device_input(const DeviceFrameInput& input,
                                             std::optional<std::span<const BodyPair>> body_pairs);
     virtual void do_count_work(bool on) = 0;
     virtual std::span<Device* const> do_devices() const = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/bodies/bodies.h"
 
+#include "algorithms/bodies/arc.h"
 #include "algorithms/bodies/drift.h"
 #include "algorithms/bodies/pack.h"
 #include "backends/upload.h"
@@ -132,8 +133,9 @@ std::vector<std::uint32_t> Bodies::positions_of(std::size_t body,
 
 std::vector<std::byte> Bodies::shared_vertices() const {
     std::vector<std::byte> bytes;
+    const auto pack = geometry_.motion == Motion::linear ? pack_vertices_with_distances : pack_vertices;
     for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh)
-        pack_vertices(bytes, geometry_, meshes_[mesh], scene_.meshes[mesh].vertices);
+        pack(bytes, geometry_, meshes_[mesh], scene_.meshes[mesh].vertices);
     return bytes;
 }
 
@@ -160,14 +162,21 @@ void Bodies::upload_static() {
     const auto real = real_bytes(geometry_);
     poses_ = device_.allocate(scene_.bodies.size() * pose_reals(geometry_) * real, "poses");
     vertices_ = device_.allocate(vertex_total_ * 4 * real, "vertices");
+    if (geometry_.motion == Motion::linear) {
+        next_poses_ = device_.allocate(poses_.bytes(), "poses of the next frame");
+        next_vertices_ = device_.allocate(vertices_.bytes(), "vertices of the next frame");
+    }
     if (sharing_ == Sharing::none) return;
     const StageScope scope(device_, Stage::write);
-    device_.upload(vertices_, shared_vertices());
+    const auto shared = shared_vertices();
+    device_.upload(vertices_, shared);
+    if (next_vertices_) device_.upload(next_vertices_, shared);
 }
 
 std::size_t Bodies::bytes() const {
     std::size_t sum = 0;
-    for (const auto* buffer : {&row_table_, &blocks_, &tetrahedra_, &ids_, &boundary_, &vertices_, &poses_})
+    for (const auto* buffer : {&row_table_, &blocks_, &tetrahedra_, &ids_, &boundary_, &vertices_, &poses_,
+                               &next_vertices_, &next_poses_})
         sum += buffer->bytes();
     return sum;
 }
@@ -178,13 +187,25 @@ std::array<double, 3> Bodies::drift_of(const Frame& frame, std::size_t body) con
     return drift_bound(frame.poses[body], mesh_reaches_[scene_.bodies[body].mesh], geometry_.precision);
 }
 
-std::vector<std::byte> Bodies::packed_poses(const Frame& frame) const {
+/// The arcs of all bodies; empty with motion=none. Deformable bodies move on straight paths.
+std::vector<double> Bodies::arcs_of(const FrameInput& input) const {
+    std::vector<double> arcs;
+    if (input.next == nullptr) return arcs;
+    for (std::size_t body = 0; body < input.frame.poses.size(); ++body) {
+        const bool turns = needs(body) && !scene_.bodies[body].deformable;
+        arcs.push_back(turns ? arc_between(input.frame.poses[body], input.next->poses[body]) : 0);
+    }
+    return arcs;
+}
+
+std::vector<std::byte> Bodies::packed_poses(const Frame& frame, std::span<const double> arcs) const {
     std::vector<std::byte> bytes;
     const auto row = pose_reals(geometry_) * real_bytes(geometry_);
     bytes.reserve(frame.poses.size() * row);
     for (std::size_t body = 0; body < frame.poses.size(); ++body) {
         if (needs(body))
-            pack_pose(bytes, geometry_, frame.poses[body], drift_of(frame, body));
+            pack_pose(bytes, geometry_, frame.poses[body], drift_of(frame, body),
+                      arcs.empty() ? 0 : arcs[body]);
         else
             bytes.resize(bytes.size() + row);
     }
@@ -200,15 +221,18 @@ bool Bodies::changes_poses(bool all) const {
     return all || std::any_of(scene_.bodies.begin(), scene_.bodies.end(), moves);
 }
 
-void Bodies::update_poses(const Frame& frame, bool all) {
+void Bodies::update_poses(const FrameInput& input, bool all) {
     if (!changes_poses(all)) return;
-    std::vector<std::byte> bytes;
+    std::vector<std::byte> bytes, next_bytes;
     {
         const HostWork work(device_, Stage::preprocess, "pack poses");
-        bytes = packed_poses(frame);
+        const auto arcs = arcs_of(input);
+        bytes = packed_poses(input.frame, arcs);
+        if (input.next != nullptr) next_bytes = packed_poses(*input.next, arcs);
     }
     const StageScope scope(device_, Stage::write);
     device_.upload(poses_, bytes);
+    if (input.next != nullptr) device_.upload(next_poses_, next_bytes);
 }
 
 void Bodies::set_subdomain(const Subdomain& subdomain) {
@@ -238,7 +262,12 @@ void Bodies::plan_runs() {
     }
 }
 
-void Bodies::update_deformed(const Frame& frame, bool waits) {
+void Bodies::update_deformed(const FrameInput& input, bool waits) {
+    upload_deformed(input.frame, vertices_, waits);
+    if (input.next != nullptr) upload_deformed(*input.next, next_vertices_, waits);
+}
+
+void Bodies::upload_deformed(const Frame& frame, const Buffer& vertices, bool waits) {
     const auto row = 4 * real_bytes(geometry_);
     for (const auto& run : runs_) {
         std::vector<std::byte> bytes;
@@ -252,13 +281,13 @@ void Bodies::update_deformed(const Frame& frame, bool waits) {
         }
         if (bytes.empty()) continue;
         const StageScope scope(device_, Stage::write);
-        device_.upload(vertices_, bytes, run.first * row, waits);
+        device_.upload(vertices, bytes, run.first * row, waits);
     }
 }
 
-void Bodies::update(const Frame& frame, bool all) {
-    update_poses(frame, all);
-    update_deformed(frame);
+void Bodies::update(const FrameInput& input, bool all) {
+    update_poses(input, all);
+    update_deformed(input);
 }
 
 } // namespace tandem

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "algorithms/bodies/frame_input.h"
 #include "algorithms/bounds/geometry.h"
 #include "algorithms/hierarchy/order.h"
 #include "algorithms/distributed/subdomain.h"
@@ -37,15 +38,15 @@ public:
     Bodies(Device& device, const Scene& scene, const Geometry& geometry, Sharing sharing,
            MeshOrder order = {}, PairLayout pair_layout = PairLayout::slots);
 
-    /// Enqueues the upload of a frame's poses, and vertices of deformable bodies. `all`: also if no rigid
-    /// body moves, as the first frame needs it. For Sharing::by_mesh; the published data path has its own
-    /// uploads.
-    void update(const Frame& frame, bool all = true);
+    /// Enqueues the upload of a frame's poses, and vertices of deformable bodies; with motion=linear also
+    /// those of its successor. `all`: also if no rigid body moves, as the first frame needs it. For
+    /// Sharing::by_mesh; the published data path has its own uploads.
+    void update(const FrameInput& input, bool all = true);
     /// The two halves of update(). `waits`: wait for the upload of the vertices.
-    void update_poses(const Frame& frame, bool all);
+    void update_poses(const FrameInput& input, bool all);
     /// Whether update_poses() uploads anything.
     bool changes_poses(bool all) const;
-    void update_deformed(const Frame& frame, bool waits = false);
+    void update_deformed(const FrameInput& input, bool waits = false);
     /// From the next frame on, reads and uploads only bodies of this subdomain.
     void set_subdomain(const Subdomain& subdomain);
     /// From the next frame on, update() skips the vertices of these deformable bodies, which other code
@@ -82,7 +83,7 @@ public:
     std::size_t bytes() const;
     /// The rows of all bodies, and a frame's poses, in the format of kernels.
     std::span<const std::byte> packed_rows() const { return bytes_of(rows_); }
-    std::vector<std::byte> packed_poses(const Frame& frame) const;
+    std::vector<std::byte> packed_poses(const Frame& frame) const { return packed_poses(frame, {}); }
 
     const Buffer& row_table() const { return row_table_; } ///< BODY_WORDS words a body
     /// The table that members_of (pairs.clh) reads: rows of blocks of slots, or row_table().
@@ -92,6 +93,9 @@ public:
     const Buffer& boundary() const { return boundary_; } ///< 1 byte each; bit i: the face opposite corner i
     const Buffer& vertices() const { return vertices_; } ///< 4 reals each
     const Buffer& poses() const { return poses_; }       ///< POSE_REALS reals a body
+    /// The same of the frame's successor; with motion=none the same buffers, which kernels do not read.
+    const Buffer& next_vertices() const { return next_vertices_ ? next_vertices_ : vertices_; }
+    const Buffer& next_poses() const { return next_poses_ ? next_poses_ : poses_; }
 
 private:
     void lay_out();
@@ -99,6 +103,9 @@ private:
     std::vector<BodyRow> block_rows() const;
     void upload_static();
     std::vector<std::byte> shared_vertices() const;
+    std::vector<std::byte> packed_poses(const Frame& frame, std::span<const double> arcs) const;
+    std::vector<double> arcs_of(const FrameInput& input) const;
+    void upload_deformed(const Frame& frame, const Buffer& vertices, bool waits);
     std::array<double, 3> drift_of(const Frame& frame, std::size_t body) const;
     void plan_runs();
     bool needs(std::size_t body) const { return roles_.empty() || roles_[body] != Role::none; }
@@ -126,7 +133,7 @@ private:
         std::vector<std::uint32_t> bodies;
     };
     std::vector<Run> runs_;
-    Buffer row_table_, blocks_, tetrahedra_, ids_, boundary_, vertices_, poses_;
+    Buffer row_table_, blocks_, tetrahedra_, ids_, boundary_, vertices_, poses_, next_vertices_, next_poses_;
 };
 
 } // namespace tandem

@@ -82,9 +82,10 @@ Frame downloaded(Device& device, const Scene& scene, const DeviceFrame& frame) {
     return frame_on_host;
 }
 
-void refuse_flawed(Device& device, const Scene& scene, const DeviceFrame& frame, Precision precision,
+void refuse_flawed(Device& device, const Scene& scene, const DeviceFrameInput& input, Precision precision,
                    std::uint64_t flawed) {
-    check_range(scene, downloaded(device, scene, frame), precision);
+    check_range(scene, downloaded(device, scene, input.frame), precision);
+    if (input.next != nullptr) check_range(scene, downloaded(device, scene, *input.next), precision);
     throw InputError(
         fmt::format("{} rows of the frame were out of range on {} and have changed since; do not "
                     "write them before run() returns",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/bodies/pack.h"
 
+#include <cmath>
 #include <cstring>
 
 namespace tandem {
@@ -19,34 +20,60 @@ void append(std::vector<std::byte>& out, const Numbers& numbers) {
     }
 }
 
+/// The distance of a rounded vertex from the origin, rounded up.
 template<class Real>
-void write_rows(std::byte* target, const OrderedMesh& mesh, const std::vector<Eigen::Vector3d>& vertices) {
+Real distance_of(const std::array<Real, 4>& row) {
+    constexpr double upwards = 1 + 0x1p-20;
+    return static_cast<Real>(
+        std::hypot(static_cast<double>(row[0]), static_cast<double>(row[1]), static_cast<double>(row[2]))
+        * upwards);
+}
+
+template<class Real>
+void write_rows(std::byte* target, const OrderedMesh& mesh, const std::vector<Eigen::Vector3d>& vertices,
+                bool has_distances) {
     // Reads in the order of memory, because a new frame's vertices may not be in a cache; the written rows
     // fit into one.
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         if (mesh.numbers[i] == OrderedMesh::unused) continue;
         const auto& p = vertices[i];
-        const std::array<Real, 4> row{static_cast<Real>(p.x()), static_cast<Real>(p.y()),
-                                      static_cast<Real>(p.z()), 0};
+        std::array<Real, 4> row{static_cast<Real>(p.x()), static_cast<Real>(p.y()), static_cast<Real>(p.z()),
+                                0};
+        if (has_distances) row[3] = distance_of(row);
         std::memcpy(target + mesh.numbers[i] * sizeof(row), row.data(), sizeof(row));
     }
+}
+
+void write_rows_in(const Geometry& geometry, std::byte* out, const OrderedMesh& mesh,
+                   const std::vector<Eigen::Vector3d>& vertices, bool has_distances) {
+    if (geometry.precision == Precision::fp64)
+        write_rows<double>(out, mesh, vertices, has_distances);
+    else
+        write_rows<float>(out, mesh, vertices, has_distances);
+}
+
+void append_vertices(std::vector<std::byte>& out, const Geometry& geometry, const OrderedMesh& mesh,
+                     const std::vector<Eigen::Vector3d>& vertices, bool has_distances) {
+    const auto offset = out.size();
+    out.resize(offset + mesh.vertices.size() * 4 * real_bytes(geometry));
+    write_rows_in(geometry, out.data() + offset, mesh, vertices, has_distances);
 }
 
 } // namespace
 
 void write_vertices(std::byte* out, const Geometry& geometry, const OrderedMesh& mesh,
                     const std::vector<Eigen::Vector3d>& vertices) {
-    if (geometry.precision == Precision::fp64)
-        write_rows<double>(out, mesh, vertices);
-    else
-        write_rows<float>(out, mesh, vertices);
+    write_rows_in(geometry, out, mesh, vertices, false);
 }
 
 void pack_vertices(std::vector<std::byte>& out, const Geometry& geometry, const OrderedMesh& mesh,
                    const std::vector<Eigen::Vector3d>& vertices) {
-    const auto offset = out.size();
-    out.resize(offset + mesh.vertices.size() * 4 * real_bytes(geometry));
-    write_vertices(out.data() + offset, geometry, mesh, vertices);
+    append_vertices(out, geometry, mesh, vertices, false);
+}
+
+void pack_vertices_with_distances(std::vector<std::byte>& out, const Geometry& geometry,
+                                  const OrderedMesh& mesh, const std::vector<Eigen::Vector3d>& vertices) {
+    append_vertices(out, geometry, mesh, vertices, true);
 }
 
 /// The order of operations affects the bits of answers; the reference has the same order
@@ -65,7 +92,7 @@ std::array<double, 12> pose_rows(const Pose& pose) {
 }
 
 void pack_pose(std::vector<std::byte>& out, const Geometry& geometry, const Pose& pose,
-               const std::array<double, 3>& drift) {
+               const std::array<double, 3>& drift, double arc) {
     const auto put = [&](const auto& numbers) {
         if (geometry.precision == Precision::fp64)
             append<double>(out, numbers);
@@ -73,7 +100,7 @@ void pack_pose(std::vector<std::byte>& out, const Geometry& geometry, const Pose
             append<float>(out, numbers);
     };
     put(pose_rows(pose));
-    if (geometry.placement == Placement::exact) put(std::array<double, 4>{drift[0], drift[1], drift[2], 0});
+    if (pose_reals(geometry) == 16) put(std::array<double, 4>{drift[0], drift[1], drift[2], arc});
 }
 
 } // namespace tandem

@@ -10,20 +10,24 @@
 
 namespace tandem {
 
-/// Appends 4 reals per vertex (the fourth is padding) in the numbering of the ordered mesh, rounded once to
-/// the geometry's precision.
+/// Appends 4 reals per vertex in the numbering of the ordered mesh, rounded once to the geometry's precision.
+/// The fourth is 0.
 void pack_vertices(std::vector<std::byte>& out, const Geometry& geometry, const OrderedMesh& mesh,
                    const std::vector<Eigen::Vector3d>& vertices);
 
-/// Writes the same rows to `out`, which must be large enough.
+/// The same, but the fourth real is the vertex's distance from the origin, rounded up (swing_of of body.clh).
+void pack_vertices_with_distances(std::vector<std::byte>& out, const Geometry& geometry,
+                                  const OrderedMesh& mesh, const std::vector<Eigen::Vector3d>& vertices);
+
+/// Writes the rows of pack_vertices to `out`, which must be large enough.
 void write_vertices(std::byte* out, const Geometry& geometry, const OrderedMesh& mesh,
                     const std::vector<Eigen::Vector3d>& vertices);
 
 /// Appends the 12 reals of a pose: the rows of the rotation matrix, each followed by its component of the
 /// translation. The quaternion is normalised and the matrix computed in double, then rounded once. With
-/// placement=exact 4 more reals follow: `drift`, the body's drift_bound, and padding.
+/// placement=exact or motion=linear 4 more reals follow: `drift`, the body's drift_bound, and `arc` (arc.h).
 void pack_pose(std::vector<std::byte>& out, const Geometry& geometry, const Pose& pose,
-               const std::array<double, 3>& drift);
+               const std::array<double, 3>& drift, double arc = 0);
 
 /// The same 12 numbers before rounding.
 std::array<double, 12> pose_rows(const Pose& pose);

@@ -38,37 +38,47 @@ DEVICE RealRow row_of(double x, double y, double z, double w) {
 }
 
 // The rows of a unit quaternion's matrix, as in pose_rows of pack.cpp.
-DEVICE void write_pose(GLOBAL RealRow* rows, double w, double x, double y, double z, const double* t) {
+DEVICE void write_pose(GLOBAL RealRow* rows, const double* q, const double* t) {
+    const double w = q[0];
+    const double x = q[1];
+    const double y = q[2];
+    const double z = q[3];
     rows[0] = row_of(1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), t[0]);
     rows[1] = row_of(2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w), t[1]);
     rows[2] = row_of(2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y), t[2]);
 }
 
-// `numbers`: tx ty tz qw qx qy qz. Normalises as pose_of_row and again as pose_rows, because the second time
-// changes bits that affect answers.
-DEVICE void pack_pose(GLOBAL RealRow* rows, const double* numbers, double norm) {
-    const double first = SQUARE_ROOT(norm);
-    const double a = numbers[3] / first;
-    const double b = numbers[4] / first;
-    const double c = numbers[5] / first;
-    const double d = numbers[6] / first;
-    const double second = SQUARE_ROOT((a * a + b * b) + (c * c + d * d));
-    write_pose(rows, a / second, b / second, c / second, d / second, numbers);
+// Loads a row tx ty tz qw qx qy qz. Bodies with vertices in world coordinates get the identity. Returns the
+// squared norm of the quaternion.
+DEVICE double load_pose(GLOBAL const void* rows, uint kind, GLOBAL const uint* bodies, ulong body,
+                        double* numbers) {
+    const int in_world = (bodies[body * BODY_WORDS + BODY_FLAGS] & BODY_IN_WORLD) != 0u;
+    for (uint i = 0; i < POSE_NUMBERS; ++i)
+        numbers[i] = in_world || kind == ROWS_NONE ? (i == 3u ? 1 : 0)
+                                                   : number_at(rows, kind, body * POSE_NUMBERS + i);
+    return (numbers[4] * numbers[4] + numbers[6] * numbers[6])
+           + (numbers[5] * numbers[5] + numbers[3] * numbers[3]);
 }
 
-// A work-item packs one body. Bodies with vertices in world coordinates get the identity.
+// Normalises as pose_of_row and again as pose_rows, because the second time changes bits that affect answers.
+DEVICE void unit_quaternion(const double* numbers, double norm, double* q) {
+    const double first = SQUARE_ROOT(norm);
+    for (uint i = 0; i < 4u; ++i) q[i] = numbers[3 + i] / first;
+    const double second = SQUARE_ROOT((q[0] * q[0] + q[1] * q[1]) + (q[2] * q[2] + q[3] * q[3]));
+    for (uint i = 0; i < 4u; ++i) q[i] = q[i] / second;
+}
+
+DEVICE int is_rotation(double norm) { return norm > LEAST_NORM && norm < LARGEST_NORM; }
+
+// A work-item packs one body.
 KERNEL void pack_poses(GLOBAL real* poses, GLOBAL const void* rows, uint kind, GLOBAL const uint* bodies,
                        uint count, double limit, double origin_x, double origin_y, double origin_z,
                        GLOBAL uint* status) {
     for (ulong body = GLOBAL_ID; body < count; body += GLOBAL_COUNT) {
         const int in_world = (bodies[body * BODY_WORDS + BODY_FLAGS] & BODY_IN_WORLD) != 0u;
-        double numbers[POSE_NUMBERS] = {0, 0, 0, 1, 0, 0, 0};
-        if (!in_world && kind != ROWS_NONE)
-            for (uint i = 0; i < POSE_NUMBERS; ++i)
-                numbers[i] = number_at(rows, kind, body * POSE_NUMBERS + i);
-        double norm = (numbers[4] * numbers[4] + numbers[6] * numbers[6])
-                      + (numbers[5] * numbers[5] + numbers[3] * numbers[3]);
-        if (!(in_range(numbers, limit) && norm > LEAST_NORM && norm < LARGEST_NORM)) {
+        double numbers[POSE_NUMBERS];
+        double norm = load_pose(rows, kind, bodies, body, numbers);
+        if (!(in_range(numbers, limit) && is_rotation(norm))) {
             counter_add(status + STATUS_FLAWED, 1u);
             for (uint i = 0; i < POSE_NUMBERS; ++i) numbers[i] = i == 3u ? 1 : 0;
             norm = 1;
@@ -78,7 +88,50 @@ KERNEL void pack_poses(GLOBAL real* poses, GLOBAL const void* rows, uint kind, G
             numbers[1] -= origin_y;
             numbers[2] -= origin_z;
         }
-        pack_pose((GLOBAL RealRow*)(poses + body * POSE_REALS), numbers, norm);
+        double q[4];
+        unit_quaternion(numbers, norm, q);
+        write_pose((GLOBAL RealRow*)(poses + body * POSE_REALS), q, numbers);
+    }
+}
+
+// Bound on the square root of a difference of two normalised quaternions, and factor for all later roundings:
+// see arc.cpp, whose operations these are.
+#define NORMALISATION_ERROR 8.881784197001252e-16 // 2^-50
+#define ARC_SLACK (1 + 9.5367431640625e-07)       // 1 + 2^-20
+
+DEVICE double arc_between(const double* p, const double* q) {
+    const double dot = (p[0] * q[0] + p[1] * q[1]) + (p[2] * q[2] + p[3] * q[3]);
+    const double sign = dot < 0 ? -1 : 1;
+    const double w = q[0] - sign * p[0];
+    const double x = q[1] - sign * p[1];
+    const double y = q[2] - sign * p[2];
+    const double z = q[3] - sign * p[3];
+    const double square = (w * w + x * x) + (y * y + z * z);
+    if (!(square > 0)) return 0;
+    const double distance = SQUARE_ROOT(square) + NORMALISATION_ERROR;
+    return 0.5 * distance * distance * ARC_SLACK;
+}
+
+// With MOTION_LINEAR: the last row of both poses of a body, after pack_poses has packed both. It counts no
+// flaws, because pack_poses has.
+KERNEL void pack_arcs(GLOBAL real* poses, GLOBAL real* next_poses, GLOBAL const void* rows, uint kind,
+                      GLOBAL const void* next_rows, uint next_kind, GLOBAL const uint* bodies, uint count) {
+    for (ulong body = GLOBAL_ID; body < count; body += GLOBAL_COUNT) {
+        double numbers[POSE_NUMBERS];
+        double next_numbers[POSE_NUMBERS];
+        const double norm = load_pose(rows, kind, bodies, body, numbers);
+        const double next_norm = load_pose(next_rows, next_kind, bodies, body, next_numbers);
+        double arc = 0;
+        if (is_rotation(norm) && is_rotation(next_norm)) {
+            double p[4];
+            double q[4];
+            unit_quaternion(numbers, norm, p);
+            unit_quaternion(next_numbers, next_norm, q);
+            arc = arc_between(p, q);
+        }
+        const RealRow row = row_of(0, 0, 0, arc);
+        ((GLOBAL RealRow*)(poses + body * POSE_REALS))[3] = row;
+        ((GLOBAL RealRow*)(next_poses + body * POSE_REALS))[3] = row;
     }
 }
 
@@ -92,8 +145,8 @@ KERNEL void pack_unit_poses(GLOBAL real* poses, GLOBAL const double* rows, uint 
         const double y = numbers[5];
         const double z = numbers[6];
         const double length = SQUARE_ROOT((w * w + x * x) + (y * y + z * z));
-        write_pose((GLOBAL RealRow*)(poses + body * POSE_REALS), w / length, x / length, y / length,
-                   z / length, t);
+        const double q[4] = {w / length, x / length, y / length, z / length};
+        write_pose((GLOBAL RealRow*)(poses + body * POSE_REALS), q, t);
     }
 }
 

@@ -42,6 +42,7 @@ PackStage::PackStage(const Bodies& bodies, LaunchShape shape)
     const auto& source = kernel_source("algorithms/bodies/pack_frame.cl");
     poses_ = device.compile(source, "pack_poses", defines);
     vertices_ = device.compile(source, "pack_vertices", defines);
+    if (bodies.geometry().motion == Motion::linear) arcs_ = device.compile(source, "pack_arcs", defines);
     std::vector<std::uint32_t> indices;
     for (std::uint32_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
         first_indices_.push_back(static_cast<std::uint32_t>(indices.size()));
@@ -58,9 +59,9 @@ Grid PackStage::grid_over(std::uint64_t count) const {
     return {std::clamp<std::uint64_t>(groups, 1, shape_.groups), shape_.group_size};
 }
 
-void PackStage::pack_poses(const DeviceRows& rows, const Eigen::Vector3d& origin,
+void PackStage::pack_poses(const DeviceRows& rows, const Buffer& poses, const Eigen::Vector3d& origin,
                            const Buffer& status) const {
-    const std::array<Argument, 10> arguments{bodies_.poses(), rows.buffer ? rows.buffer : bodies_.row_table(),
+    const std::array<Argument, 10> arguments{poses,           rows.buffer ? rows.buffer : bodies_.row_table(),
                                              kind_of(rows),   bodies_.row_table(),
                                              bodies_.count(), limit_,
                                              origin.x(),      origin.y(),
@@ -68,31 +69,42 @@ void PackStage::pack_poses(const DeviceRows& rows, const Eigen::Vector3d& origin
     bodies_.device().launch(poses_, grid_over(bodies_.count()), arguments);
 }
 
-void PackStage::pack_vertices(std::size_t body, const DeviceRows& rows, const Eigen::Vector3d& origin,
-                              const Buffer& status) const {
+void PackStage::pack_arcs(const DeviceRows& rows, const DeviceRows& next_rows) const {
+    const auto buffer = [&](const DeviceRows& r) { return r.buffer ? r.buffer : bodies_.row_table(); };
+    const std::array<Argument, 8> arguments{bodies_.poses(),     bodies_.next_poses(), buffer(rows),
+                                            kind_of(rows),       buffer(next_rows),    kind_of(next_rows),
+                                            bodies_.row_table(), bodies_.count()};
+    bodies_.device().launch(arcs_, grid_over(bodies_.count()), arguments);
+}
+
+void PackStage::pack_vertices(std::size_t body, const DeviceRows& rows, const Buffer& vertices,
+                              const Eigen::Vector3d& origin, const Buffer& status) const {
     const auto count = static_cast<std::uint32_t>(bodies_.mesh(body).numbers.size());
     const auto first_index = first_indices_[bodies_.scene().bodies[body].mesh];
-    const std::array<Argument, 12> arguments{bodies_.vertices(),
-                                             bodies_.row(body).vertices,
-                                             indices_,
-                                             first_index,
-                                             rows.buffer,
-                                             kind_of(rows),
-                                             count,
-                                             limit_,
-                                             origin.x(),
-                                             origin.y(),
-                                             origin.z(),
-                                             status};
+    const std::array<Argument, 12> arguments{vertices,    bodies_.row(body).vertices,
+                                             indices_,    first_index,
+                                             rows.buffer, kind_of(rows),
+                                             count,       limit_,
+                                             origin.x(),  origin.y(),
+                                             origin.z(),  status};
     bodies_.device().launch(vertices_, grid_over(count), arguments);
 }
 
-void PackStage::launch(const DeviceFrame& frame, const Eigen::Vector3d& origin, const Buffer& status) const {
-    const StageScope scope(bodies_.device(), Stage::preprocess);
-    pack_poses(frame.poses, origin, status);
+void PackStage::pack(const DeviceFrame& frame, const Buffer& poses, const Buffer& vertices,
+                     const Eigen::Vector3d& origin, const Buffer& status) const {
+    pack_poses(frame.poses, poses, origin, status);
     for (std::size_t body = 0; body < frame.deformed.size(); ++body)
         if (bodies_.scene().bodies[body].deformable)
-            pack_vertices(body, frame.deformed[body], origin, status);
+            pack_vertices(body, frame.deformed[body], vertices, origin, status);
+}
+
+void PackStage::launch(const DeviceFrameInput& input, const Eigen::Vector3d& origin,
+                       const Buffer& status) const {
+    const StageScope scope(bodies_.device(), Stage::preprocess);
+    pack(input.frame, bodies_.poses(), bodies_.vertices(), origin, status);
+    if (input.next == nullptr) return;
+    pack(*input.next, bodies_.next_poses(), bodies_.next_vertices(), origin, status);
+    pack_arcs(input.frame.poses, input.next->poses);
 }
 
 } // namespace tandem

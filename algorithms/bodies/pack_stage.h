@@ -14,21 +14,25 @@ public:
     /// and with placement=exact, because only the host bounds drift.
     PackStage(const Bodies& bodies, LaunchShape shape);
 
-    /// Enqueues the packing of a frame that passes check_fits: one launch for the poses, and one per
-    /// deformable body. Coordinates are made relative to `origin`. Adds rows out of range to STATUS_FLAWED of
-    /// `status`.
-    void launch(const DeviceFrame& frame, const Eigen::Vector3d& origin, const Buffer& status) const;
+    /// Enqueues the packing of a frame that passes check_fits, and of its successor: one launch for the
+    /// poses, and one per deformable body; a third for the arcs. Coordinates are made relative to `origin`.
+    /// Adds rows out of range to STATUS_FLAWED of `status`.
+    void launch(const DeviceFrameInput& input, const Eigen::Vector3d& origin, const Buffer& status) const;
 
 private:
-    void pack_poses(const DeviceRows& rows, const Eigen::Vector3d& origin, const Buffer& status) const;
-    void pack_vertices(std::size_t body, const DeviceRows& rows, const Eigen::Vector3d& origin,
-                       const Buffer& status) const;
+    void pack(const DeviceFrame& frame, const Buffer& poses, const Buffer& vertices,
+              const Eigen::Vector3d& origin, const Buffer& status) const;
+    void pack_poses(const DeviceRows& rows, const Buffer& poses, const Eigen::Vector3d& origin,
+                    const Buffer& status) const;
+    void pack_arcs(const DeviceRows& rows, const DeviceRows& next_rows) const;
+    void pack_vertices(std::size_t body, const DeviceRows& rows, const Buffer& vertices,
+                       const Eigen::Vector3d& origin, const Buffer& status) const;
     Grid grid_over(std::uint64_t count) const;
 
     const Bodies& bodies_;
     LaunchShape shape_;
     double limit_; ///< largest magnitude of a coordinate
-    Kernel poses_, vertices_;
+    Kernel poses_, vertices_, arcs_;
     Buffer indices_;                           ///< OrderedMesh::numbers of the meshes of deformable bodies
     std::vector<std::uint32_t> first_indices_; ///< by mesh, in indices_
 };

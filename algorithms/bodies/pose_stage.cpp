@@ -20,6 +20,7 @@ std::unique_ptr<PoseStage> PoseStage::make(const Bodies& bodies, LaunchShape sha
     const auto& info = bodies.device().info();
     const bool host_packs = info.id == "host" || bodies.count() < few_bodies || !info.has_double
                             || bodies.geometry().placement == Placement::exact
+                            || bodies.geometry().motion == Motion::linear
                             || bodies.sharing() == Bodies::Sharing::none;
     if (host_packs) return nullptr;
     try {

@@ -14,8 +14,8 @@ class PoseStage {
 public:
     /// Null where the host packs faster: on device host, whose kernels the host runs, and for few bodies,
     /// which it packs in the time of a launch. Also null where it must: without double on the device, with
-    /// placement=exact, whose poses have drift, with Sharing::none, and without memory for the rows. `bodies`
-    /// must outlive the result.
+    /// placement=exact or motion=linear, whose poses have drift or arcs, with Sharing::none, and without
+    /// memory for the rows. `bodies` must outlive the result.
     static std::unique_ptr<PoseStage> make(const Bodies& bodies, LaunchShape shape);
 
     /// Enqueues the upload and the packing of the frame's poses. `all`: as for Bodies::update_poses.

@@ -18,9 +18,9 @@ constexpr Direction coordinates[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 constexpr Direction corners[] = {{1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {1, -1, -1}};
 constexpr Direction edges[] = {{1, 1, 0}, {1, -1, 0}, {1, 0, 1}, {1, 0, -1}, {0, 1, 1}, {0, 1, -1}};
 
-constexpr std::array<const Parameter*, 6> declared{&parameters::k,         &parameters::axes,
-                                                   &parameters::precision, &parameters::rounding,
-                                                   &parameters::placement, &parameters::origin};
+constexpr std::array<const Parameter*, 7> declared{
+    &parameters::k,         &parameters::axes,   &parameters::precision, &parameters::rounding,
+    &parameters::placement, &parameters::origin, &parameters::motion};
 
 } // namespace
 
@@ -54,6 +54,7 @@ Geometry geometry_of(const Settings& settings) {
     geometry.rounding = settings[parameters::rounding];
     geometry.placement = settings[parameters::placement];
     geometry.origin = settings[parameters::origin];
+    geometry.motion = settings[parameters::motion];
     if (geometry.coordinate_axes && geometry.k != 8)
         throw InputError("setting axes=coordinate goes with k=8 only; leave axes out for other k");
     if (geometry.placement == Placement::exact && geometry.rounding != Rounding::safe
@@ -64,6 +65,9 @@ Geometry geometry_of(const Settings& settings) {
         && geometry.precision == Precision::fp64)
         throw InputError("setting origin=auto rounds one difference in double, which the bounds of "
                          "placement=exact do not cover with precision=double; leave one of the three out");
+    if (geometry.motion == Motion::linear && geometry.rounding == Rounding::published)
+        throw InputError("setting motion=linear does not go with rounding=published, which has no bound for "
+                         "positions between frames; choose rounding=safe");
     return geometry;
 }
 
@@ -71,6 +75,7 @@ Defines row_defines(const Geometry& geometry, std::uint32_t group_size) {
     Defines defines;
     define(defines, parameters::precision, geometry.precision);
     define(defines, parameters::placement, geometry.placement);
+    define(defines, parameters::motion, geometry.motion);
     define(defines, parameters::group_size, group_size);
     return defines;
 }

@@ -17,6 +17,7 @@ struct Geometry {
     Rounding rounding = Rounding::safe;       ///< of the ends of slabs
     Placement placement = Placement::rounded; ///< exact only with safe or directed rounding
     Origin origin = Origin::world;            ///< of coordinates on devices
+    Motion motion = Motion::none;             ///< linear not with published rounding
 
     /// Whether all members are equal.
     bool operator==(const Geometry&) const = default;
@@ -25,14 +26,15 @@ struct Geometry {
 /// The k / 2 integer directions of a geometry, with components in {-1, 0, 1}, in the order of kernels.
 std::vector<std::array<int, 3>> directions(const Geometry& geometry);
 
-/// The settings that algorithms with k-DOPs declare: k, axes, precision, rounding, placement and origin.
+/// The settings that algorithms with k-DOPs declare: k, axes, precision, rounding, placement, origin and
+/// motion.
 std::span<const Parameter* const> geometry_parameters();
 
 /// The geometry of these settings. Throws InputError if axes does not fit k, placement does not fit rounding,
-/// or origin does not fit placement.
+/// or origin does not fit placement, or motion does not fit rounding.
 Geometry geometry_of(const Settings& settings);
 
-/// Defines for kernels that read rows only (rows.clh): precision, placement and group size.
+/// Defines for kernels that read rows only (rows.clh): precision, placement, motion and group size.
 Defines row_defines(const Geometry& geometry, std::uint32_t group_size);
 
 /// Defines for kernels that use bounds: the whole geometry and the group size.
@@ -40,7 +42,7 @@ Defines geometry_defines(const Geometry& geometry, std::uint32_t group_size);
 
 /// Reals of a pose on devices (body.clh).
 inline std::size_t pose_reals(const Geometry& geometry) {
-    return geometry.placement == Placement::exact ? 16 : 12;
+    return geometry.placement == Placement::exact || geometry.motion == Motion::linear ? 16 : 12;
 }
 
 /// Bytes of one real number.

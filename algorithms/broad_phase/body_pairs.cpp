@@ -61,19 +61,19 @@ void BodyPairs::begin_on_device(std::optional<std::span<const BodyPair>> given) 
     sorted_ = true;
 }
 
-void BodyPairs::begin(const Frame& frame, std::optional<std::span<const BodyPair>> given) {
+void BodyPairs::begin(const FrameInput& input, std::optional<std::span<const BodyPair>> given) {
     if (given) {
         upload_given(*given);
     } else if (!broad_) {
         on_host_ = {};
         searches_ = true;
         // Once a session, because bodies move little between frames. An old order costs time but no pairs.
-        if (!sorted_) stage_->sort(frame);
+        if (!sorted_) stage_->sort(input.frame);
         sorted_ = true;
     } else {
         {
             const HostWork work(device_, Stage::broad, "body pairs");
-            found_ = broad_->pairs(frame);
+            found_ = broad_->pairs(input);
             std::erase_if(found_, [this](BodyPair pair) { return !contains(pair); });
         }
         upload(found_);
@@ -106,16 +106,16 @@ bool BodyPairs::grow(const Status& status) {
     return true;
 }
 
-std::vector<BodyPair> BodyPairs::list(const Frame* frame, const Status& status) const {
+std::vector<BodyPair> BodyPairs::list(const FrameInput* input, const Status& status) const {
     if (!searches_) return {on_host_.begin(), on_host_.end()};
     const auto found = status.counter(STATUS_BODY_PAIRS);
     if (found > rows_.capacity()) {
-        if (frame == nullptr)
+        if (input == nullptr)
             throw OutOfMemory(fmt::format("{}: out of memory for {} body pairs; raise --memory, or use fewer "
                                           "bodies",
                                           device_.info().id, found));
         const HostWork work(device_, Stage::broad, "body pairs");
-        auto all = BroadSweep(scene_, geometry_, Broad::tight, self_).pairs(*frame);
+        auto all = BroadSweep(scene_, geometry_, Broad::tight, self_).pairs(*input);
         std::erase_if(all, [this](BodyPair pair) { return !contains(pair); });
         return all;
     }

@@ -21,7 +21,7 @@ public:
 
     /// Starts a frame: uploads `given` pairs, or those that the host finds. Throws InputError for more than
     /// 2^32 - 1 pairs.
-    void begin(const Frame& frame, std::optional<std::span<const BodyPair>> given);
+    void begin(const FrameInput& input, std::optional<std::span<const BodyPair>> given);
     /// Starts a frame in the device's memory, after its refit. Without `given` the device finds the pairs,
     /// independent of setting broad.
     void begin_on_device(std::optional<std::span<const BodyPair>> given);
@@ -37,9 +37,9 @@ public:
     /// again. Throws OutOfMemory.
     bool grow(const Status& status);
     /// The frame's pairs in ascending order, after a launch. Pairs of the device are downloaded. If its
-    /// buffer is too small for them, the host finds them; for a frame in the device's memory (`frame` = null)
+    /// buffer is too small for them, the host finds them; for a frame in the device's memory (`input` = null)
     /// that is impossible and throws OutOfMemory.
-    std::vector<BodyPair> list(const Frame* frame, const Status& status) const;
+    std::vector<BodyPair> list(const FrameInput* input, const Status& status) const;
     /// From the next frame on, finds the pairs of this subdomain. `given` pairs are not filtered.
     void set_subdomain(const Subdomain& subdomain);
 

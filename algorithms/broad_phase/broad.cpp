@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/broad_phase/broad.h"
 
+#include "algorithms/bodies/arc.h"
 #include "algorithms/bodies/ball.h"
 #include "algorithms/bodies/drift.h"
 #include "algorithms/bodies/self_pairs.h"
@@ -119,11 +120,29 @@ void BroadSweep::bound(const Frame& frame, std::uint32_t body, double skin, doub
     if (skin > 0) widen(slabs, skin);
 }
 
-std::vector<BodyPair> BroadSweep::pairs(const Frame& frame, std::span<const double> skins) const {
+/// Extends the bounds of a body in a frame by those in its successor and by the path between them.
+void BroadSweep::add_path(const FrameInput& input, std::uint32_t body, double skin, double* slabs) const {
+    std::vector<double> next(2 * directions_.size());
+    bound(*input.next, body, skin, next.data());
+    for (std::size_t i = 0; i < next.size(); i += 2) {
+        slabs[i] = std::min(slabs[i], next[i]);
+        slabs[i + 1] = std::max(slabs[i + 1], next[i + 1]);
+    }
+    if (scene_.bodies[body].deformable) return;
+    // The factor covers that kernels compute with rounded distances, arcs and lengths of directions.
+    constexpr double slack = 1 + 0x1p-16;
+    const double arc = arc_between(input.frame.poses[body], input.next->poses[body]);
+    if (arc > 0) widen(slabs, arc * shapes_[scene_.bodies[body].mesh].reach * slack + underflow_);
+}
+
+std::vector<BodyPair> BroadSweep::pairs(const FrameInput& input, std::span<const double> skins) const {
     const auto stride = 2 * directions_.size();
     std::vector<double> slabs(scene_.bodies.size() * stride);
-    for (std::uint32_t body = 0; body < scene_.bodies.size(); ++body)
-        bound(frame, body, skins.empty() ? 0 : skins[body], &slabs[body * stride]);
+    for (std::uint32_t body = 0; body < scene_.bodies.size(); ++body) {
+        const double skin = skins.empty() ? 0 : skins[body];
+        bound(input.frame, body, skin, &slabs[body * stride]);
+        if (input.next != nullptr) add_path(input, body, skin, &slabs[body * stride]);
+    }
     return swept(slabs);
 }
 

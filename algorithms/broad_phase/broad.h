@@ -18,10 +18,10 @@ public:
     BroadSweep(const Scene& scene, const Geometry& geometry, Broad bound, SelfPairs self = SelfPairs::off);
 
     /// Pairs in ascending order. O(n log n), plus the number of pairs that overlap along the sweep direction.
-    std::vector<BodyPair> pairs(const Frame& frame) const { return pairs(frame, {}); }
-    /// Pairs that may overlap while every vertex is within its body's skin of its position in `frame`. Empty
-    /// `skins`: 0 for all bodies.
-    std::vector<BodyPair> pairs(const Frame& frame, std::span<const double> skins) const;
+    std::vector<BodyPair> pairs(const FrameInput& input) const { return pairs(input, {}); }
+    /// Pairs that may overlap while every vertex is within its body's skin of its position in the frame, or
+    /// on its path to the frame's successor. Empty `skins`: 0 for all bodies.
+    std::vector<BodyPair> pairs(const FrameInput& input, std::span<const double> skins) const;
     /// Pairs of bodies that are bounded by these balls.
     std::vector<BodyPair> pairs(std::span<const Ball> balls) const;
 
@@ -36,6 +36,7 @@ private:
         double reach = 0;  ///< largest distance of a vertex from the mesh's origin
     };
 
+    void add_path(const FrameInput& input, std::uint32_t body, double skin, double* slabs) const;
     std::vector<BodyPair> swept(const std::vector<double>& slabs) const;
     Shape shape_of(const std::vector<Eigen::Vector3d>& vertices) const;
     void bound_rigid(const Shape& shape, const Pose& pose, double* slabs) const;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/distributed/displacement_tracker.h"
 
+#include "algorithms/bodies/arc.h"
+#include "algorithms/bodies/drift.h"
 #include "base/parallel.h"
 
 #include <algorithm>
@@ -10,7 +12,10 @@
 namespace tandem {
 
 DisplacementTracker::DisplacementTracker(const Scene& scene) : scene_(scene), balls_(scene.bodies.size()) {
-    for (const auto& mesh : scene.meshes) mesh_balls_.push_back(ball_around(mesh.vertices));
+    for (const auto& mesh : scene.meshes) {
+        mesh_balls_.push_back(ball_around(mesh.vertices));
+        mesh_reach_.push_back(reach_of(mesh.vertices));
+    }
     reference_.poses.resize(scene.bodies.size());
     reference_.deformed.resize(scene.bodies.size());
 }
@@ -53,7 +58,19 @@ double DisplacementTracker::displacement(const Frame& frame, std::uint32_t body)
     return (centre - balls_[body].centre).norm() * (1 + 1e-12) + (2 * sine + 1e-7) * ball.radius;
 }
 
-bool DisplacementTracker::all_within(const Frame& frame, std::span<const std::uint32_t> bodies,
+/// The same on the path to the frame's successor. Straight paths are nowhere displaced more than at one of
+/// their ends; the arc of a rotation leaves them by a bounded distance. NaN as displacement().
+double DisplacementTracker::displacement_on_path(const FrameInput& input, std::uint32_t body) const {
+    const double first = displacement(input.frame, body);
+    if (input.next == nullptr) return first;
+    const double last = displacement(*input.next, body);
+    const double larger = first + last - std::min(first, last); // NaN if one of them is NaN
+    if (scene_.bodies[body].deformable) return larger;
+    const double arc = arc_between(input.frame.poses[body], input.next->poses[body]);
+    return larger + arc * mesh_reach_[scene_.bodies[body].mesh] * (1 + 1e-12);
+}
+
+bool DisplacementTracker::all_within(const FrameInput& input, std::span<const std::uint32_t> bodies,
                                      double skin) const {
     constexpr std::size_t part = 2048; // 0.1 ms of work, several times the start-up of a thread
     const auto parts = (bodies.size() + part - 1) / part;
@@ -62,7 +79,8 @@ bool DisplacementTracker::all_within(const Frame& frame, std::span<const std::ui
         for (auto j = i * part; within && j < std::min(bodies.size(), (i + 1) * part); ++j) {
             const auto body = bodies[j];
             // The negation makes NaN count as beyond the skin.
-            if (!scene_.bodies[body].fixed && !(displacement(frame, body) <= skin * balls_[body].radius))
+            if (!scene_.bodies[body].fixed
+                && !(displacement_on_path(input, body) <= skin * balls_[body].radius))
                 within = false;
         }
     });

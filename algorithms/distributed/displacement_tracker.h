@@ -2,6 +2,7 @@
 #pragma once
 
 #include "algorithms/bodies/ball.h"
+#include "algorithms/bodies/frame_input.h"
 #include "scenes/scene.h"
 
 #include <span>
@@ -25,15 +26,18 @@ public:
     /// Upper bound on the displacement of every vertex since the reference frame. NaN if a coordinate is NaN.
     double displacement(const Frame& frame, std::uint32_t body) const;
     /// Whether every body of these that is not fixed is displaced by at most `skin` times the radius of its
-    /// ball.
-    bool all_within(const Frame& frame, std::span<const std::uint32_t> bodies, double skin) const;
+    /// ball, in the frame and on the path to its successor.
+    bool all_within(const FrameInput& input, std::span<const std::uint32_t> bodies, double skin) const;
     /// Skins of all bodies: `fraction` of the radii of their balls.
     std::vector<double> skins(double fraction) const;
 
 private:
+    double displacement_on_path(const FrameInput& input, std::uint32_t body) const;
+
     const Scene& scene_;
-    std::vector<Ball> mesh_balls_; ///< by mesh, in mesh coordinates
-    std::vector<Ball> balls_;      ///< by body
+    std::vector<Ball> mesh_balls_;   ///< by mesh, in mesh coordinates
+    std::vector<double> mesh_reach_; ///< by mesh: reach_of its vertices
+    std::vector<Ball> balls_;        ///< by body
     Frame reference_;
 };
 

@@ -119,8 +119,8 @@ bool add(FrameResult& result, std::span<const std::byte> message) {
 
 } // namespace
 
-FrameResult JobSession::do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) {
-    auto result = body_pairs ? own_->run(frame, *body_pairs) : own_->run(frame);
+FrameResult JobSession::do_run(const FrameInput& input, std::optional<std::span<const BodyPair>> body_pairs) {
+    auto result = body_pairs ? own_->run(input.frame, *body_pairs) : own_->run(input.frame);
     bool has_pairs = result.has_pairs();
     const auto all = ranks_.gather_to_all(message_of(result));
     for (std::size_t rank = 0; rank < all.size(); ++rank)

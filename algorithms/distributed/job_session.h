@@ -16,7 +16,7 @@ public:
 
 private:
     void do_reset() override { own_->reset(); }
-    FrameResult do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) override;
+    FrameResult do_run(const FrameInput& input, std::optional<std::span<const BodyPair>> body_pairs) override;
     void do_count_work(bool on) override { own_->count_work(on); }
     std::span<Device* const> do_devices() const override { return own_->devices(); }
     std::optional<std::span<const std::uint32_t>> do_owned() const override { return own_->owned(); }

@@ -44,8 +44,8 @@ Partitioner::Partitioner(const Scene& scene, const Geometry& geometry, std::size
     std::iota(all_bodies_.begin(), all_bodies_.end(), 0u);
 }
 
-bool Partitioner::is_valid(const Frame& frame) {
-    is_expired_ = !is_partitioned_ || (!has_all_ghosts_ && !tracker_.all_within(frame, all_bodies_, skin_));
+bool Partitioner::is_valid(const FrameInput& input) {
+    is_expired_ = !is_partitioned_ || (!has_all_ghosts_ && !tracker_.all_within(input, all_bodies_, skin_));
     valid_frames_ += is_expired_ ? 0 : 1;
     return !is_expired_;
 }

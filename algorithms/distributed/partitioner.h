@@ -15,8 +15,9 @@ public:
     /// `scene` must outlive this.
     Partitioner(const Scene& scene, const Geometry& geometry, std::size_t subdomains);
 
-    /// Whether the subdomains contain every pair of `frame`. O(bodies), and O(vertices) of deformable bodies.
-    bool is_valid(const Frame& frame);
+    /// Whether the subdomains contain every pair of the frame, and on the path to its successor. O(bodies),
+    /// and O(vertices) of deformable bodies.
+    bool is_valid(const FrameInput& input);
     /// Makes a new partition. `speeds`: of each subdomain's device, in any unit. When the last partition
     /// expired early the skin grows; from its limit on, all subdomains contain all bodies and never expire.
     void partition(const Frame& frame, std::span<const double> speeds);

@@ -78,7 +78,8 @@ void RankSession::do_count_work(bool on) {
     if (session_) session_->count_work(on);
 }
 
-FrameResult RankSession::do_run_device_input(const DeviceFrame&, std::optional<std::span<const BodyPair>>) {
+FrameResult RankSession::do_run_device_input(const DeviceFrameInput&,
+                                             std::optional<std::span<const BodyPair>>) {
     throw InputError(
         fmt::format("{}: ranks of a job exchange bodies through the host's memory; give the frame in the "
                     "host's memory",
@@ -306,7 +307,9 @@ void RankSession::repartition_if_needed(const Frame& frame, FrameResult& result)
     result.repartitions = 1;
 }
 
-FrameResult RankSession::do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) {
+FrameResult RankSession::do_run(const FrameInput& input,
+                                std::optional<std::span<const BodyPair>> body_pairs) {
+    const auto& frame = input.frame;
     if (body_pairs) throw InputError("run() was given body pairs, which ranks of a job find themselves");
     Report own;
     FrameResult result;

@@ -37,8 +37,8 @@ private:
     };
 
     void do_reset() override;
-    FrameResult do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) override;
-    FrameResult do_run_device_input(const DeviceFrame& frame,
+    FrameResult do_run(const FrameInput& input, std::optional<std::span<const BodyPair>> body_pairs) override;
+    FrameResult do_run_device_input(const DeviceFrameInput& frame,
                                     std::optional<std::span<const BodyPair>> body_pairs) override;
     void do_count_work(bool on) override;
     std::span<Device* const> do_devices() const override { return devices_; }

@@ -20,10 +20,10 @@ public:
     /// `scene` must outlive this.
     RepartitionLoop(const Scene& scene, const Settings& settings, std::size_t subdomains);
 
-    /// Whether `frame` needs another partition before it runs: the last one does not cover it, or the load
+    /// Whether the frame needs another partition before it runs: the last one does not cover it, or the load
     /// was unbalanced.
-    bool is_due(const Frame& frame) {
-        return !partitioner_.is_valid(frame) || balancer_.should_repartition();
+    bool is_due(const FrameInput& input) {
+        return !partitioner_.is_valid(input) || balancer_.should_repartition();
     }
     /// Makes a new partition from a frame, or from balls that contain the bodies.
     template<class Positions>

@@ -30,17 +30,17 @@ private:
     void do_reset() override {
         for (const auto& session : sessions_) session->reset();
     }
-    FrameResult do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) override;
+    FrameResult do_run(const FrameInput& input, std::optional<std::span<const BodyPair>> body_pairs) override;
     void do_count_work(bool on) override {
         for (const auto& session : sessions_) session->count_work(on);
     }
     std::span<Device* const> do_devices() const override { return devices_; }
     const Settings& do_settings() const override { return sessions_.front()->settings(); }
 
-    bool repartition_if_needed(const Frame& frame);
+    bool repartition_if_needed(const FrameInput& input);
     void apply_subdomains();
     void distribute_pairs(std::span<const BodyPair> body_pairs);
-    FrameResult run_subdomain(std::size_t i, const Frame& frame, bool has_given_pairs);
+    FrameResult run_subdomain(std::size_t i, const FrameInput& input, bool has_given_pairs);
     void add_sample(const FrameResult& result);
 
     const Traversal& traversal_;
@@ -70,11 +70,14 @@ SplitSession::SplitSession(const Traversal& traversal, std::span<Device* const> 
 }
 
 /// Repartitions the bodies when the partition is invalid or the load is unbalanced. Returns whether it did.
-bool SplitSession::repartition_if_needed(const Frame& frame) {
-    const bool is_new = partition_.is_due(frame);
+bool SplitSession::repartition_if_needed(const FrameInput& input) {
+    const bool is_new = partition_.is_due(input);
     if (is_new) {
         const HostWork work(*devices_.front(), Stage::broad, "partition bodies");
-        partition_.repartition(frame);
+        partition_.repartition(input.frame);
+        // A new partition can expire on the path to the frame's successor. The skin of the next one is
+        // larger.
+        while (input.next != nullptr && partition_.is_due(input)) partition_.repartition(input.frame);
         for (std::size_t i = 0; i < sessions_.size(); ++i) {
             sessions_[i]->expect(partition_.partitioner().expected_pairs(i), partition_.contacts_a_pair());
             subdomains_[i] = partition_.subdomains()[i];
@@ -113,9 +116,9 @@ void SplitSession::distribute_pairs(std::span<const BodyPair> body_pairs) {
     apply_subdomains();
 }
 
-FrameResult SplitSession::run_subdomain(std::size_t i, const Frame& frame, bool has_given_pairs) {
+FrameResult SplitSession::run_subdomain(std::size_t i, const FrameInput& input, bool has_given_pairs) {
     const auto begin = Clock::now();
-    auto result = has_given_pairs ? sessions_[i]->run(frame, pairs_by_device_[i]) : sessions_[i]->run(frame);
+    auto result = has_given_pairs ? sessions_[i]->run(input, pairs_by_device_[i]) : sessions_[i]->run(input);
     const auto ns = std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - begin).count();
     result.shared = {
         {subdomains_[i].own.size() + subdomains_[i].ghosts.size(), result.body_pairs, result.count, ns}};
@@ -133,18 +136,19 @@ void SplitSession::add_sample(const FrameResult& result) {
     });
 }
 
-FrameResult SplitSession::do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) {
-    const bool is_new = repartition_if_needed(frame);
+FrameResult SplitSession::do_run(const FrameInput& input,
+                                 std::optional<std::span<const BodyPair>> body_pairs) {
+    const bool is_new = repartition_if_needed(input);
     std::vector<BodyPair> found;
     if (!body_pairs && broad_) {
         const HostWork work(*devices_.front(), Stage::broad, "body pairs");
-        found = broad_->pairs(frame);
+        found = broad_->pairs(input);
         body_pairs = found;
     }
     if (body_pairs) distribute_pairs(*body_pairs);
     std::vector<FrameResult> parts(sessions_.size());
     parallel_for(sessions_.size(), sessions_.size(),
-                 [&](std::size_t i) { parts[i] = run_subdomain(i, frame, body_pairs.has_value()); });
+                 [&](std::size_t i) { parts[i] = run_subdomain(i, input, body_pairs.has_value()); });
     FrameResult sum;
     for (auto& part : parts) {
         sum.shared.push_back(part.shared.front());

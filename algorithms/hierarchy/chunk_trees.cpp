@@ -167,12 +167,14 @@ void ChunkTrees::launch_strips(bool all) {
         if (jobs == 0) continue;
         const auto paired = in_pairs(bodies_.geometry()) ? 2u : 0u; // depths
         const auto first_depth = s.height > paired ? s.height - paired : 0;
-        const std::array<Argument, 12> arguments{nodes_,
+        const std::array<Argument, 14> arguments{nodes_,
                                                  tree_table_,
                                                  level_table_,
                                                  bodies_.poses(),
                                                  bodies_.tetrahedra(),
                                                  bodies_.vertices(),
+                                                 bodies_.next_poses(),
+                                                 bodies_.next_vertices(),
                                                  job_table_,
                                                  s.first_job,
                                                  jobs,

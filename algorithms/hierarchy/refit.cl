@@ -5,7 +5,7 @@
 // memory once and in whole sectors. Leaves read vertices through the pose, so that rigid bodies store no
 // transformed vertices. Inner nodes are the exact min/max of their children.
 #include "backends/portable.h"
-#include "algorithms/bodies/body.clh"
+#include "algorithms/bounds/leaf.clh"
 #include "algorithms/hierarchy/node.clh"
 
 // Capacity of a work-group in nodes: a power of two, at least one strip for each of its teams.
@@ -47,9 +47,7 @@ typedef struct {
     GLOBAL real* nodes;
     GLOBAL const uint* trees;
     GLOBAL const uint* levels;
-    GLOBAL const real* poses;
-    GLOBAL const uint* tetrahedra;
-    GLOBAL const real* vertices;
+    Solids solids;
     GLOBAL const uint* jobs;
     uint level, height;
 } Refit;
@@ -66,14 +64,11 @@ DEVICE void load_job(const Refit* refit, uint word, uint job, uint job_count, LO
 DEVICE void bound_tetrahedron(const Refit* refit, LOCAL const uint* strip, uint item, real* node) {
     const BodyTetrahedron one = {strip[JOB_BODY], strip[JOB_TETRAHEDRA] + item, strip[JOB_VERTICES],
                                  strip[JOB_FLAGS]};
-    Point corner[4];
-    load_corners(refit->poses, refit->tetrahedra, refit->vertices, &one, corner);
     for (int axis = 0; axis < DIRECTIONS; ++axis) {
         node[axis] = REAL_INFINITY;
         node[axis + DIRECTIONS] = -REAL_INFINITY;
     }
-    const Point drift = drift_at(refit->poses, strip[JOB_BODY]);
-    for (int i = 0; i < 4; ++i) widen_by_point(corner[i], drift, node, node + DIRECTIONS);
+    widen_by_tetrahedron(&refit->solids, &one, node);
     for (int word = 0; word < K; ++word) node[word] = node[word] + (real)0;
 }
 
@@ -229,13 +224,18 @@ DEVICE void write_strip(const Refit* refit, LOCAL const uint* strip, LOCAL const
 // at most MOST_STRIPS. `first_depth`: the depth at which the loop starts.
 KERNEL void refit_strips(GLOBAL real* nodes, GLOBAL const uint* trees, GLOBAL const uint* levels,
                          GLOBAL const real* poses, GLOBAL const uint* tetrahedra, GLOBAL const real* vertices,
+                         GLOBAL const real* next_poses, GLOBAL const real* next_vertices,
                          GLOBAL const uint* jobs, uint first_job, uint job_count, uint level, uint height,
                          uint first_depth) {
     LOCAL_ARRAY(Unit, tiles, TEAM_COUNT * TEAM_TILE);
     LOCAL_ARRAY(uint, rows, TEAM_COUNT * MOST_STRIPS * JOB_WORDS);
-    const Refit refit = {
-        nodes, trees, levels, poses, tetrahedra, vertices, jobs + (ulong)first_job * JOB_WORDS,
-        level, height};
+    const Refit refit = {nodes,
+                         trees,
+                         levels,
+                         {tetrahedra, poses, vertices, next_poses, next_vertices},
+                         jobs + (ulong)first_job * JOB_WORDS,
+                         level,
+                         height};
     LOCAL Unit* tile = tiles + TEAM_ID * TEAM_TILE;
     LOCAL uint* strips = rows + TEAM_ID * (MOST_STRIPS * JOB_WORDS);
     const uint fitting = (uint)TEAM_NODES >> (height + 1u);

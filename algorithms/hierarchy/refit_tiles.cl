@@ -27,10 +27,16 @@ DEVICE real merged(uint word, real a, real b) {
     return word < (uint)DIRECTIONS ? MINIMUM(b, a) : MAXIMUM(b, a);
 }
 
-// Stores a lane's slabs for the root of its tile. Upper ends are negated, so that roots are minima.
-DEVICE void keep_slabs(const real* slabs, uint lane, LOCAL real* bounds) {
+// Frames that the bounds contain: the frame and its successor with MOTION_LINEAR.
+#define FRAMES (MOTION == MOTION_LINEAR ? 2u : 1u)
+
+// Stores a lane's slabs for the root of its tile. Upper ends are negated, so that roots are minima. `added`:
+// merges them with those of the frame before.
+DEVICE void keep_slabs(const real* slabs, uint lane, int added, LOCAL real* bounds) {
     UNROLL for (uint word = 0; word < (uint)K; ++word) {
-        bounds[word * ROW + lane] = word < (uint)DIRECTIONS ? slabs[word] : -slabs[word];
+        const real end = word < (uint)DIRECTIONS ? slabs[word] : -slabs[word];
+        LOCAL real* kept = bounds + word * ROW + lane;
+        *kept = added ? MINIMUM(end, *kept) : end;
     }
 }
 
@@ -76,40 +82,46 @@ DEVICE void begin_slabs(real* slabs) {
 
 // Stores the slabs of all vertices of the tile, each once, distributed over the lanes. Their union is that of
 // the tetrahedra if all of these are active.
-DEVICE void keep_vertices(const Shapes* shapes, const Tile* tile, LOCAL const real* points, Point drift,
+DEVICE void keep_vertices(const Shapes* shapes, const Tile* tile, LOCAL const real* points, int added,
                           LOCAL real* bounds) {
+    const Point drift = drift_at(shapes->poses, tile->body);
     const uint count = vertices_of(shapes, tile);
     FOR_LANES {
         real slabs[K];
         begin_slabs(slabs);
         for (uint i = lane; i < count; i += (uint)LANES)
-            widen_by_point(point_at(points, i), drift, slabs, slabs + DIRECTIONS);
-        keep_slabs(slabs, lane, bounds);
+            widen_by_point(point_at(points, i), drift, swing_at(shapes, tile, i), slabs, slabs + DIRECTIONS);
+        keep_slabs(slabs, lane, added, bounds);
     }
 }
 
 // The same from the active tetrahedra, one bit each.
-DEVICE void keep_tetrahedra(const Shapes* shapes, const Tile* tile, LOCAL const real* points, Point drift,
-                            uint active, LOCAL real* bounds) {
+DEVICE void keep_tetrahedra(const Shapes* shapes, const Tile* tile, LOCAL const real* points, uint active,
+                            int added, LOCAL real* bounds) {
+    const Point drift = drift_at(shapes->poses, tile->body);
     FOR_LANES {
         real slabs[K];
         begin_slabs(slabs);
         if ((active >> lane & 1u) != 0u) bound_corners(shapes, tile, points, lane, drift, slabs);
-        keep_slabs(slabs, lane, bounds);
+        keep_slabs(slabs, lane, added, bounds);
     }
 }
 
-DEVICE void write_leaves(const Shapes* shapes, const Tile* tile, LOCAL const real* points, Point drift,
-                         uint active, GLOBAL real* leaves) {
+// `added`: merges the slabs with those of the frame before.
+DEVICE void write_leaves(const Shapes* shapes, const Tile* tile, LOCAL const real* points, uint active,
+                         int added, GLOBAL real* leaves) {
+    const Point drift = drift_at(shapes->poses, tile->body);
     FOR_LANES {
         real slabs[K];
         bound_corners(shapes, tile, points, lane, drift, slabs);
         const int empty = (active >> lane & 1u) == 0u;
         UNROLL for (uint axis = 0; axis < (uint)LEAF_DIRECTIONS; ++axis) {
-            const real lower = slabs[axis] + (real)0;
-            const real upper = slabs[DIRECTIONS + axis] + (real)0;
-            leaves[axis * LANES + lane] = empty ? REAL_INFINITY : lower;
-            leaves[(LEAF_DIRECTIONS + axis) * LANES + lane] = empty ? -REAL_INFINITY : upper;
+            const real lower = empty ? REAL_INFINITY : slabs[axis] + (real)0;
+            const real upper = empty ? -REAL_INFINITY : slabs[DIRECTIONS + axis] + (real)0;
+            GLOBAL real* low = leaves + axis * LANES + lane;
+            GLOBAL real* high = leaves + (LEAF_DIRECTIONS + axis) * LANES + lane;
+            *low = added ? MINIMUM(lower, *low) : lower;
+            *high = added ? MAXIMUM(upper, *high) : upper;
         }
     }
 }
@@ -122,11 +134,10 @@ KERNEL void refit_leaf_tiles(GLOBAL real* leaves, GLOBAL real* uppers, uint firs
                              GLOBAL const uint* taking_part, GLOBAL const uint* starts,
                              GLOBAL const uint* vertex_numbers, GLOBAL const uint* corners,
                              GLOBAL const uint* bodies, GLOBAL const real* poses, GLOBAL const real* vertices,
-                             uint stored) {
+                             GLOBAL const real* next_poses, GLOBAL const real* next_vertices, uint stored) {
     LOCAL_ARRAY(real, all_points, LANE_TEAMS * MOST_VERTICES * POINT_REALS);
     LOCAL_ARRAY(real, all_bounds, LANE_TEAMS * K * ROW);
     LOCAL_ARRAY(real, kept, LANES * ROOT_STRIDE);
-    const Shapes shapes = {starts, vertex_numbers, corners, bodies, poses, vertices};
     LOCAL real* points = all_points + LANE_TEAM * (MOST_VERTICES * POINT_REALS);
     LOCAL real* bounds = all_bounds + LANE_TEAM * (K * ROW);
     GLOBAL const uint* unit = units + (ulong)GROUP_ID * UNIT_WORDS;
@@ -139,18 +150,28 @@ KERNEL void refit_leaf_tiles(GLOBAL real* leaves, GLOBAL real* uppers, uint firs
         const uint at = has_tile ? i : 0u;
         const uint number = unit[UNIT_FIRST] + at;
         const Tile tile = tile_at(tiles, number);
-        load_vertices(&shapes, &tile, points);
-        LANE_BARRIER;
         const uint active = taking_part[number];
-        const Point drift = drift_at(poses, tile.body);
-        if (active == 0xffffffffu >> (LANES - tile.count))
-            keep_vertices(&shapes, &tile, points, drift, bounds);
-        else
-            keep_tetrahedra(&shapes, &tile, points, drift, active, bounds);
-        if (has_tile && (stored != 0u || unit[UNIT_PARENT] == NO_TILE))
-            write_leaves(&shapes, &tile, points, drift, active,
-                         leaves + (ulong)number * (LEAF_WORDS * LANES));
-        LANE_BARRIER;
+        uint frame = 0;
+        do {
+            const int added = frame > 0u;
+            const Shapes shapes = {starts,
+                                   vertex_numbers,
+                                   corners,
+                                   bodies,
+                                   added ? next_poses : poses,
+                                   added ? next_vertices : vertices};
+            load_vertices(&shapes, &tile, points);
+            LANE_BARRIER;
+            if (active == 0xffffffffu >> (LANES - tile.count))
+                keep_vertices(&shapes, &tile, points, added, bounds);
+            else
+                keep_tetrahedra(&shapes, &tile, points, active, added, bounds);
+            if (has_tile && (stored != 0u || unit[UNIT_PARENT] == NO_TILE))
+                write_leaves(&shapes, &tile, points, active, added,
+                             leaves + (ulong)number * (LEAF_WORDS * LANES));
+            LANE_BARRIER;
+            ++frame;
+        } while (frame < FRAMES);
         if (has_tile) make_root(bounds, kept + at * ROOT_STRIDE, roots + (ulong)number * K);
         i += LANE_TEAMS;
     } while (i < count);
@@ -164,9 +185,9 @@ KERNEL void bound_touched_tiles(GLOBAL real* leaves, GLOBAL uint* marks, uint ti
                                 GLOBAL const uint* tiles, GLOBAL const uint* taking_part,
                                 GLOBAL const uint* starts, GLOBAL const uint* vertex_numbers,
                                 GLOBAL const uint* corners, GLOBAL const uint* bodies,
-                                GLOBAL const real* poses, GLOBAL const real* vertices) {
+                                GLOBAL const real* poses, GLOBAL const real* vertices,
+                                GLOBAL const real* next_poses, GLOBAL const real* next_vertices) {
     LOCAL_ARRAY(real, all_points, LANE_TEAMS * MOST_VERTICES * POINT_REALS);
-    const Shapes shapes = {starts, vertex_numbers, corners, bodies, poses, vertices};
     LOCAL real* points = all_points + LANE_TEAM * (MOST_VERTICES * POINT_REALS);
     const uint step = GROUP_COUNT * LANE_TEAMS * TILES_A_TURN;
     uint first = (GROUP_ID * LANE_TEAMS + LANE_TEAM) * TILES_A_TURN;
@@ -187,12 +208,23 @@ KERNEL void bound_touched_tiles(GLOBAL real* leaves, GLOBAL uint* marks, uint ti
             const uint at = has_tile ? highest_bit(touched) : 0u;
             const uint number = start + at;
             const Tile tile = tile_at(tiles, number);
-            load_vertices(&shapes, &tile, points);
-            LANE_BARRIER;
-            if (has_tile)
-                write_leaves(&shapes, &tile, points, drift_at(poses, tile.body), taking_part[number],
-                             leaves + (ulong)number * (LEAF_WORDS * LANES));
-            LANE_BARRIER;
+            uint frame = 0;
+            do {
+                const int added = frame > 0u;
+                const Shapes shapes = {starts,
+                                       vertex_numbers,
+                                       corners,
+                                       bodies,
+                                       added ? next_poses : poses,
+                                       added ? next_vertices : vertices};
+                load_vertices(&shapes, &tile, points);
+                LANE_BARRIER;
+                if (has_tile)
+                    write_leaves(&shapes, &tile, points, taking_part[number], added,
+                                 leaves + (ulong)number * (LEAF_WORDS * LANES));
+                LANE_BARRIER;
+                ++frame;
+            } while (frame < FRAMES);
             touched &= ~(1u << at);
         } while (touched != 0u);
     } while (first < tile_count);
@@ -220,7 +252,7 @@ KERNEL void refit_upper_tiles(GLOBAL real* uppers, uint first_upper, GLOBAL real
                 slabs[word] = lane < tile.count ? below[word] : no_end(word);
                 if (has_tile) box[word * LANES] = slabs[word];
             }
-            keep_slabs(slabs, lane, bounds);
+            keep_slabs(slabs, lane, 0, bounds);
         }
         LANE_BARRIER;
         if (has_tile) make_root(bounds, kept + at * ROOT_STRIDE, roots + (ulong)number * K);

@@ -256,7 +256,7 @@ void TileTrees::do_refit(const Frame& frame, bool all) {
         const Grid grid{all ? step.units : step.moving_units, group_size_};
         if (grid.groups == 0) continue;
         if (i == 0) {
-            const std::array<Argument, 15> arguments{leaves_,
+            const std::array<Argument, 17> arguments{leaves_,
                                                      uppers_,
                                                      first_upper(),
                                                      roots_,
@@ -270,6 +270,8 @@ void TileTrees::do_refit(const Frame& frame, bool all) {
                                                      bodies_.row_table(),
                                                      bodies_.poses(),
                                                      bodies_.vertices(),
+                                                     bodies_.next_poses(),
+                                                     bodies_.next_vertices(),
                                                      std::uint32_t{stores ? 1u : 0u}};
             device_.launch(leaf_kernel_, grid, arguments);
         } else {
@@ -284,7 +286,7 @@ void TileTrees::do_refit(const Frame& frame, bool all) {
 void TileTrees::bound_touched() const {
     const StageScope scope(device_, Stage::refit);
     const std::uint32_t tiles = std::max(1u, group_size_ / lanes) * tiles_a_turn; // of a group, or more
-    const std::array<Argument, 11> arguments{leaves_,
+    const std::array<Argument, 13> arguments{leaves_,
                                              marks_,
                                              first_upper(),
                                              tile_table_,
@@ -294,7 +296,9 @@ void TileTrees::bound_touched() const {
                                              shapes_.corners(),
                                              bodies_.row_table(),
                                              bodies_.poses(),
-                                             bodies_.vertices()};
+                                             bodies_.vertices(),
+                                             bodies_.next_poses(),
+                                             bodies_.next_vertices()};
     device_.launch(touched_kernel_, {(first_upper() + tiles - 1) / tiles, group_size_}, arguments);
 }
 

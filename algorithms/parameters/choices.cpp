@@ -16,6 +16,7 @@ static_assert(is(Axes::standard, AXES_STANDARD) && is(Axes::coordinate, AXES_COO
 static_assert(is(Rounding::nearest, ROUNDING_NEAREST) && is(Rounding::safe, ROUNDING_SAFE)
               && is(Rounding::published, ROUNDING_PUBLISHED) && is(Rounding::directed, ROUNDING_DIRECTED));
 static_assert(is(Placement::rounded, PLACEMENT_ROUNDED) && is(Placement::exact, PLACEMENT_EXACT));
+static_assert(is(Motion::none, MOTION_NONE) && is(Motion::linear, MOTION_LINEAR));
 static_assert(is(Output::pairs, OUTPUT_PAIRS) && is(Output::count, OUTPUT_COUNT)
               && is(Output::digest, OUTPUT_DIGEST));
 static_assert(is(SelfPairs::off, SELF_OFF) && is(SelfPairs::on, SELF_ON)

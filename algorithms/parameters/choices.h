@@ -31,6 +31,12 @@ enum class Placement {
     exact    ///< the scene's vertices in double, transformed by its poses without rounding
 };
 
+/// Positions that the bounds of a frame contain.
+enum class Motion {
+    none,  ///< those of the frame
+    linear ///< those between the frame and its successor
+};
+
 /// Origin of coordinates on devices.
 enum class Origin {
     world,

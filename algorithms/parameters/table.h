@@ -56,6 +56,13 @@ inline constexpr Setting<Placement> placement{
     "PLACEMENT",
     "vertices whose contacts no slab misses: rounded: the world vertices after rounding; exact: the scene's "
     "vertices, transformed exactly by its poses (rounding=safe and directed, wider slabs)"};
+inline constexpr Setting<Motion> motion{
+    "motion",
+    Motion::none,
+    {{"none", Motion::none}, {"linear", Motion::linear}},
+    "MOTION",
+    "positions that bounds contain: none: those of the frame; linear: all between the frame and its "
+    "successor, so that no pair that meets on the way is missed; contacts are those of the frame"};
 inline constexpr Setting<Origin> origin{
     "origin",
     Origin::world,

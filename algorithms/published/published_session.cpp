@@ -62,7 +62,7 @@ public:
 
 private:
     void do_reset() override {}
-    FrameResult do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) override;
+    FrameResult do_run(const FrameInput& input, std::optional<std::span<const BodyPair>> body_pairs) override;
     void do_count_work(bool on) override { pipeline_.count(on); }
     std::span<Device* const> do_devices() const override { return devices_; }
     const Settings& do_settings() const override { return pipeline_.settings; }
@@ -129,16 +129,16 @@ FrameResult PublishedSession::run_whole() {
 
 /// A frame that does not fit is walked in parts, as the release launches again with the rest of a full
 /// buffer. Each part gets its contacts before the next one is walked.
-FrameResult PublishedSession::do_run(const Frame& frame,
+FrameResult PublishedSession::do_run(const FrameInput& input,
                                      std::optional<std::span<const BodyPair>> body_pairs) {
-    frame_.update(frame);
+    frame_.update(input.frame);
     try {
-        pipeline_.body_pairs->begin(frame, body_pairs);
+        pipeline_.body_pairs->begin(input, body_pairs);
         if (batches_ == 1) return run_whole();
     } catch (const OutOfMemory&) {
         batches_ = std::max<std::uint64_t>(batches_, 2);
     }
-    return run_in_batches(pipeline_, &frame, body_pairs, batches_);
+    return run_in_batches(pipeline_, &input, body_pairs, batches_);
 }
 
 } // namespace

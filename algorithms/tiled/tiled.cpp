@@ -6,6 +6,7 @@
 #include "algorithms/tiled/tile_pairs.clh"
 #include "algorithms/tiled/tiled_walker.h"
 #include "backends/lanes.h"
+#include "base/error.h"
 
 #include <algorithm>
 
@@ -88,7 +89,9 @@ private:
         const double real = settings[tandem::parameters::precision] == Precision::fp64 ? 8 : 4;
         const auto bytes = static_cast<double>(count_walked(scene, walked_of(settings)))
                            * static_cast<double>(settings[tandem::parameters::k]) * real;
-        return bytes > static_cast<double>(info.global_bytes) / 4 ? Slabs::three : Slabs::touched;
+        const bool are_swept = settings[tandem::parameters::motion] == Motion::linear;
+        return bytes > static_cast<double>(info.global_bytes) / 4 && !are_swept ? Slabs::three
+                                                                                : Slabs::touched;
     }
 
     void do_fit(Settings& settings, const DeviceInfo& info, const Scene* scene) const override {
@@ -101,13 +104,19 @@ private:
         if (settings[tandem::parameters::slabs] != Slabs::usual) return;
         const bool needs_scene = info.is_gpu && settings[tandem::parameters::k] > 12;
         if (needs_scene && scene == nullptr) return;
-        const auto chosen = needs_scene   ? slabs_of_large_k(settings, info, *scene)
-                            : info.is_gpu ? Slabs::all
-                                          : Slabs::three;
+        // Slabs that the walk makes from vertices are of one frame.
+        const bool stores_all = info.is_gpu || settings[tandem::parameters::motion] == Motion::linear;
+        const auto chosen = needs_scene  ? slabs_of_large_k(settings, info, *scene)
+                            : stores_all ? Slabs::all
+                                         : Slabs::three;
         settings.set(tandem::parameters::slabs(chosen));
     }
 
     void do_check(const Settings& settings, const DeviceInfo& info) const override {
+        if (settings[tandem::parameters::motion] == Motion::linear
+            && settings[tandem::parameters::slabs] == Slabs::three)
+            throw InputError("setting slabs=three makes slabs from the vertices of one frame, and "
+                             "motion=linear needs those of two; choose slabs=all");
         const auto group_size = static_cast<std::uint32_t>(settings[tandem::parameters::group_size]);
         const auto smallest = fitting_shape(settings, info, {group_size, 1}).group_size;
         check_local_memory(settings, info, local_bytes_of_group(settings, smallest), "algorithm tiled",

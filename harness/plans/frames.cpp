@@ -36,14 +36,18 @@ void check_frames(const Scene& scene, std::size_t first, std::size_t last) {
 }
 
 FrameRange::FrameRange(const Scene& scene, std::size_t first, std::size_t last, Degenerate handling,
-                       std::uint64_t budget)
-    : scene_(scene), first_(first), last_(last) {
+                       std::uint64_t budget, bool has_successor)
+    : scene_(scene), first_(first), last_(last), made_(size() + (has_successor ? 1 : 0)) {
     check_frames(scene, first, last);
+    if (has_successor && last + 1 >= scene.frame_count)
+        throw InputError(fmt::format(
+            "frame {} of scene {} has no successor, which motion=linear needs; {}", last, scene.name,
+            last > 0 ? fmt::format("end the frames at {}", last - 1) : "choose a scene that moves"));
     const auto bytes = bytes_of_frame(scene);
     FlawSearch search(scene, first);
-    auto frames = search_flaws(search, std::clamp<std::uint64_t>(budget / bytes, 1, size()));
+    auto frames = search_flaws(search, std::clamp<std::uint64_t>(budget / bytes, 1, made_));
     flaws_ = search.flaws(handling);
-    auto all_bytes = bytes * size();
+    auto all_bytes = bytes * made_;
     if (handling == Degenerate::skip && flaws_.any()) {
         all_bytes += (flaws_.degenerate + flaws_.non_finite) * sizeof(Frame::skipped[0][0]);
         left_out_.emplace(std::move(search));
@@ -57,9 +61,9 @@ FrameRange::FrameRange(const Scene& scene, std::size_t first, std::size_t last, 
 /// Searches every frame for flaws, `most` frames at a time on all cores. Returns the last batch of frames.
 FrameRange::Frames FrameRange::search_flaws(FlawSearch& search, std::size_t most) const {
     Frames frames;
-    for (std::size_t begin = 0; begin < size(); begin += most) {
+    for (std::size_t begin = 0; begin < made_; begin += most) {
         frames.clear(); // frees memory before the next batch takes some
-        for (auto i = begin; i < std::min(size(), begin + most); ++i)
+        for (auto i = begin; i < std::min(made_, begin + most); ++i)
             frames.push_back(std::make_shared<Frame>(scene_.frame(first_ + i)));
         search.add(frames);
     }
@@ -85,6 +89,20 @@ std::shared_ptr<const Frame> FrameRange::frame(std::size_t index) const {
 std::shared_ptr<const Frame> FrameRange::frame(std::size_t index, Origin origin) const {
     if (origin == Origin::world) return frame(index);
     return std::make_shared<const Frame>(counted_from(origin_of(scene_, origin), *frame(index)));
+}
+
+FrameState FrameRange::state(std::size_t index, Motion motion, Origin origin) const {
+    FrameState state{frame(index, origin), nullptr};
+    if (motion == Motion::none) return state;
+    state.next = frame(index + 1, origin);
+    if (state.frame->skipped == state.next->skipped) return state;
+    const auto skipped = skipped_in_either(state.frame->skipped, state.next->skipped);
+    for (auto* one : {&state.frame, &state.next}) {
+        auto copy = std::make_shared<Frame>(**one);
+        copy->skipped = skipped;
+        *one = std::move(copy);
+    }
+    return state;
 }
 
 } // namespace tandem

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "algorithms/bodies/frame_input.h"
 #include "algorithms/parameters/choices.h"
 #include "harness/verify/flaw_search.h"
 
@@ -18,6 +19,12 @@ inline constexpr std::uint64_t frame_budget = std::uint64_t{1} << 30;
 /// Throws InputError that names the reason when the scene does not have these frames.
 void check_frames(const Scene& scene, std::size_t first, std::size_t last);
 
+/// A frame of a range, and its successor where a cell bounds motion.
+struct FrameState {
+    std::shared_ptr<const Frame> frame, next; ///< next: null with motion=none
+    FrameInput input() const { return {*frame, next.get()}; }
+};
+
 /// Frames FIRST..LAST of a scene with their flaws handled. All are stored when they fit the budget. Otherwise
 /// only the last requested frame is stored, and another frame is made on request by Scene::frame and
 /// FlawSearch::leave_out, which takes the time to read and check it. Thread-safe.
@@ -25,9 +32,11 @@ class FrameRange {
 public:
     /// Makes every frame once and handles flaws, with at most `budget` bytes of frames, or one frame, in
     /// memory. Throws InputError when frames do not exist or cannot be read, or when `handling` refuses a
-    /// flaw. The scene must outlive this object and must not move.
+    /// flaw. The scene must outlive this object and must not move. `has_successor`: whether the frame after
+    /// LAST is made, too, as the successor of LAST.
     FrameRange(const Scene& scene, std::size_t first, std::size_t last,
-               Degenerate handling = Degenerate::flat, std::uint64_t budget = frame_budget);
+               Degenerate handling = Degenerate::flat, std::uint64_t budget = frame_budget,
+               bool has_successor = false);
     FrameRange(const FrameRange&) = delete;
     FrameRange& operator=(const FrameRange&) = delete;
 
@@ -41,6 +50,10 @@ public:
     std::shared_ptr<const Frame> frame(std::size_t index) const;
     /// The same frame with coordinates relative to the origin of that setting, as a session computes it.
     std::shared_ptr<const Frame> frame(std::size_t index, Origin origin) const;
+    /// The same with its successor if `motion` is linear, which needs has_successor for the last frame. Both
+    /// then skip the tetrahedra that one of them skips.
+    FrameState state(std::size_t index, Motion motion, Origin origin = Origin::world) const;
+    bool has_successor() const { return made_ > size(); }
 
 private:
     using Frames = std::vector<std::shared_ptr<Frame>>;
@@ -49,6 +62,7 @@ private:
 
     const Scene& scene_;
     std::size_t first_, last_;
+    std::size_t made_; ///< size(), or one more with a successor
     Flaws flaws_;
     std::optional<FlawSearch> left_out_; ///< set when frames have tetrahedra to leave out
     Frames stored_;                      ///< all frames or none

@@ -59,13 +59,21 @@ Scene open_scene(const RunOptions& options) {
     return scene_from_meshes(options.meshes, poses);
 }
 
-FrameRange open_frames(const RunOptions& options, const Scene& scene) {
-    const auto [first, last] = named_frames(options.frames, scene);
-    return {scene, first, last, options.degenerate};
+FrameRange open_frames(const RunOptions& options, const Scene& scene, bool bounds_motion) {
+    const auto [first, last] = named_frames(options.frames, scene, bounds_motion);
+    return {scene, first, last, options.degenerate, frame_budget, bounds_motion};
 }
 
-std::pair<std::size_t, std::size_t> named_frames(const std::string& frames, const Scene& scene) {
-    if (frames.empty()) return {0, scene.frame_count - 1};
+bool bounds_motion(std::span<const Cell> cells) {
+    return std::ranges::any_of(cells, [](const Cell& cell) {
+        return geometry_of(cell.settings).motion == Motion::linear || bounds_motion(cell.candidates);
+    });
+}
+
+std::pair<std::size_t, std::size_t> named_frames(const std::string& frames, const Scene& scene,
+                                                 bool bounds_motion) {
+    const bool leaves_out_last = bounds_motion && scene.frame_count > 1;
+    if (frames.empty()) return {0, scene.frame_count - (leaves_out_last ? 2 : 1)};
     const auto colon = frames.find(':');
     const auto text = std::string_view(frames);
     const auto first = parse_number(text.substr(0, colon), frames);
@@ -105,7 +113,8 @@ void check_coordinates(const Cell& cell, const Scene& scene, const Frame& frame)
 }
 
 void check_coordinates(const Cell& cell, const Scene& scene, const FrameRange& range) {
-    for (std::size_t i = 0; i < range.size(); ++i) check_coordinates(cell, scene, *range.frame(i));
+    const auto last = range.size() + (range.has_successor() ? 1 : 0);
+    for (std::size_t i = 0; i < last; ++i) check_coordinates(cell, scene, *range.frame(i));
 }
 
 void check_outputs(const RunOptions& options, std::span<const Cell> cells) {

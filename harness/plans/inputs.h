@@ -11,10 +11,16 @@ Scene open_scene(const RunOptions& options);
 
 /// Opens the frames of the options and handles their flaws. Throws InputError when the scene has no such
 /// frames or they are refused. The scene must outlive the result and must not move.
-FrameRange open_frames(const RunOptions& options, const Scene& scene);
+/// `bounds_motion`: frames need successors.
+FrameRange open_frames(const RunOptions& options, const Scene& scene, bool bounds_motion);
 
-/// The first and the last frame of "FIRST:LAST" or "N"; all when empty. Throws InputError as open_frames().
-std::pair<std::size_t, std::size_t> named_frames(const std::string& frames, const Scene& scene);
+/// Whether a cell has motion=linear.
+bool bounds_motion(std::span<const Cell> cells);
+
+/// The first and the last frame of "FIRST:LAST" or "N"; all when empty, but without the last if frames need
+/// successors. Throws InputError as open_frames().
+std::pair<std::size_t, std::size_t> named_frames(const std::string& frames, const Scene& scene,
+                                                 bool bounds_motion = false);
 
 /// The named devices, limited to --memory. Throws InputError.
 std::vector<DeviceGroup> open_devices(const RunOptions& options, const std::vector<BackendReport>& backends,

@@ -44,7 +44,7 @@ Job open_job(const RunOptions& options, std::vector<Cell> cells, const Unfit& un
 Job::Job(Scene opened, const RunOptions& given, std::vector<Cell> planned, const Unfit& unfit)
     : options(given),
       scene(std::move(opened)),
-      range(open_frames(options, scene)),
+      range(open_frames(options, scene, bounds_motion(planned))),
       cells(std::move(planned)) {
     check_outputs(options, cells);
     fit_coordinates(*this, unfit);
@@ -167,6 +167,9 @@ std::string scene_text(const Scene& scene, const FrameRange& range) {
         text += fmt::format("tetrahedra {}; they {}\n", describe(range.flaws(), scene),
                             range.flaws().handling == Degenerate::skip ? "take no part"
                                                                        : "take part as flat sets");
+    if (range.has_successor())
+        text += fmt::format("motion=linear: frame {} is only the successor of frame {}\n", range.last() + 1,
+                            range.last());
     return text;
 }
 

@@ -20,7 +20,8 @@ std::string models_of(const Cell& cell) {
 }
 
 /// Settings that came after the first records, which are comparable with records of their defaults.
-constexpr std::array<const Parameter*, 2> later_settings{&parameters::order, &parameters::self};
+constexpr std::array<const Parameter*, 3> later_settings{&parameters::order, &parameters::self,
+                                                         &parameters::motion};
 
 bool is_later_default(const std::string& name, const std::string& value) {
     return std::ranges::any_of(later_settings, [&](const Parameter* later) {

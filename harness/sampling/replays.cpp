@@ -82,10 +82,10 @@ void Replays::wait() {
 }
 
 /// Returns the frame once all ranks have it and all devices are idle.
-std::shared_ptr<const Frame> Replays::next_frame(std::size_t index) {
-    std::shared_ptr<const Frame> frame;
+FrameState Replays::next_frame(std::size_t index) {
+    FrameState frame;
     together(cell_.team, [&] {
-        frame = range_.frame(index);
+        frame = range_.state(index, settings()[parameters::motion]);
         for (auto* device : cell_.devices) device->finish();
     });
     return frame;
@@ -107,7 +107,7 @@ InstrumentedReplay Replays::instrumented() {
         const auto frame = next_frame(i);
         const ranges::ProfilerRange stretch(frame_names_[i].c_str());
         const auto begin = Clock::now();
-        const auto result = session_->run(*frame);
+        const auto result = session_->run(frame.input());
         replay.frame_ns.push_back(since(begin));
         std::vector<Trace> traces;
         together(cell_.team, [&] {
@@ -139,12 +139,12 @@ InstrumentedReplay Replays::instrumented() {
 std::vector<Trace> Replays::traced(std::size_t index) {
     const ranges::ProfilerRange cell(name_.c_str());
     session_->reset();
-    for (std::size_t i = 0; i < index; ++i) session_->run(*next_frame(i));
+    for (std::size_t i = 0; i < index; ++i) session_->run(next_frame(i).input());
     const auto frame = next_frame(index);
-    session_->run(*frame);
+    session_->run(frame.input());
     for (auto* device : cell_.devices) device->set_clocks(Clocks::on);
     const ranges::ProfilerRange stretch(frame_names_[index].c_str());
-    const auto result = session_->run(*frame);
+    const auto result = session_->run(frame.input());
     std::vector<Trace> traces;
     for (auto* device : cell_.devices) traces.push_back(device->finish());
     for (auto* device : cell_.devices) device->set_clocks(Clocks::off);
@@ -156,7 +156,7 @@ std::map<std::string_view, std::uint64_t> Replays::counted() {
     session_->reset();
     session_->count_work(true);
     for (std::size_t i = 0; i < range_.size(); ++i) {
-        const auto result = session_->run(*next_frame(i));
+        const auto result = session_->run(next_frame(i).input());
         for (const auto& counter : cell_.algorithm->counters()) {
             const auto found = result.work.find(counter.name);
             if (found == result.work.end()) continue;

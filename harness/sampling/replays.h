@@ -32,7 +32,7 @@ public:
             const auto frame = next_frame(i);
             const ranges::ProfilerRange stretch(frame_names_[i].c_str());
             const auto begin = std::chrono::steady_clock::now();
-            const auto result = session_->run(*frame);
+            const auto result = session_->run(frame.input());
             replay.frame_ns.push_back(since(begin));
             replay.add_shared(result);
             visit(i, result);
@@ -52,7 +52,7 @@ public:
     std::uint64_t submissions() const;
 
 private:
-    std::shared_ptr<const Frame> next_frame(std::size_t index);
+    FrameState next_frame(std::size_t index);
     void wait();
 
     const Cell& cell_;

@@ -128,6 +128,16 @@ void run_steps(const SimulateOptions& options, std::size_t last, Simulation& sim
     }
 }
 
+/// Throws InputError for settings that a simulation has no use for.
+void refuse_settings(const Settings& settings) {
+    if (settings[parameters::self] != SelfPairs::off)
+        throw InputError(
+            "setting self does not go with tandem simulate, whose bodies are rigid; leave it out");
+    if (settings[parameters::motion] != Motion::none)
+        throw InputError("setting motion=linear needs the next frame, which tandem simulate has not computed "
+                         "yet; leave it out");
+}
+
 } // namespace
 
 ContactFinder::ContactFinder(const Cell& cell, const Scene& scene, const Frame& start, bool timed)
@@ -172,9 +182,7 @@ int simulate_command(const SimulateOptions& options) {
     const auto backends = open_backends(request.devices, options.require);
     check_required(backends, options.require);
     const auto cell = only_cell(request, backends);
-    if (cell.settings[parameters::self] != SelfPairs::off)
-        throw InputError(
-            "setting self does not go with tandem simulate, whose bodies are rigid; leave it out");
+    refuse_settings(cell.settings);
     check_coordinates(cell, scene, scene.frame(0));
     Simulation simulation(scene);
     // Opened before the recording is made: if this fails, no recording remains to block a second try.

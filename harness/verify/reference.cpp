@@ -2,157 +2,20 @@
 #include "harness/verify/reference.h"
 
 #include "algorithms/narrow_phase/reference.h"
-#include "algorithms/bodies/drift.h"
 #include "algorithms/bodies/self_pairs.h"
-#include "harness/verify/world_vertices.h"
+#include "harness/verify/reference_bounds.h"
 #include "base/parallel.h"
 
 #include <algorithm>
-#include <cfenv>
-#include <cmath>
-#include <limits>
 #include <mutex>
 
 namespace tandem {
 
 namespace {
 
-/// Slabs of a body's tetrahedra, `stride` reals each: lower bounds, then upper bounds.
-template<class Real>
-struct Bounds {
-    std::size_t axes = 0;
-    bool published = false; ///< whether Rounding::published applies
-    std::vector<std::array<Real, 3>> vertices;
-    std::vector<Real> slabs;
-    std::vector<Real> whole; ///< of the body
-
-    const Real* tetrahedron(std::size_t i) const { return &slabs[i * 2 * axes]; }
-};
-
-/// Whether a slab starts after another's end; in the paper's test, by more than its tolerance.
-template<class Real>
-bool apart(Real lower, Real upper, bool published) {
-    constexpr Real tolerance = 10 * std::numeric_limits<float>::epsilon();
-    return published ? lower - upper > tolerance : lower > upper;
-}
-
-/// Closed test: touching slabs overlap.
-template<class Real>
-bool overlapping(const Real* a, const Real* b, std::size_t axes, bool published) {
-    for (std::size_t axis = 0; axis < axes; ++axis)
-        if (apart(a[axis], b[axes + axis], published) || apart(b[axis], a[axes + axis], published))
-            return false;
-    return true;
-}
-
-/// Sum of the terms in order, rounded to nearest. `partial` is the sum of the magnitudes of all partial sums;
-/// a single term counts as one.
-template<class Real>
-Real nearest_sum(std::span<const Real> terms, Real& partial) {
-    Real sum = terms[0];
-    partial = terms.size() == 1 ? std::fabs(sum) : 0;
-    for (const auto term : terms.subspan(1)) {
-        sum += term;
-        partial += std::fabs(sum);
-    }
-    return sum;
-}
-
-/// Sum of the terms in order, with every addition rounded in a mode of fesetround. volatile stops the
-/// compiler from moving additions across fesetround, which it treats as an ordinary call.
-template<class Real>
-Real directed_sum(std::span<const Real> terms, int mode) {
-    volatile Real sum = terms[0];
-    std::fesetround(mode);
-    for (const auto term : terms.subspan(1)) {
-        const volatile Real next = term;
-        sum = sum + next;
-    }
-    std::fesetround(FE_TONEAREST);
-    return sum;
-}
-
-/// Lower and upper bound of a point's projection for a rounding (algorithms/bounds/README.md). `drift` bounds
-/// the point's error along each axis; null for Placement::rounded.
-template<class Real>
-std::pair<Real, Real> project(const std::array<Real, 3>& point, const std::array<int, 3>& direction,
-                              Rounding rounding, const std::array<Real, 3>* drift) {
-    std::array<Real, 3> terms{};
-    std::size_t count = 0;
-    Real off = 0;
-    for (int i = 0; i < 3; ++i) {
-        if (direction[i] == 0) continue;
-        terms[count++] = direction[i] > 0 ? point[i] : -point[i];
-        if (drift != nullptr) off += (*drift)[i];
-    }
-    // The paper's release divides by the direction's length, sqrt(2) or sqrt(3), with these constants.
-    if (rounding == Rounding::published && count > 1)
-        for (auto& term : terms)
-            term *=
-                count == 2 ? static_cast<Real>(0.7071067811865476) : static_cast<Real>(0.5773502691896258);
-    const auto used = std::span<const Real>(terms).first(count);
-    if (rounding == Rounding::directed) {
-        const std::array<Real, 2> low{directed_sum(used, FE_DOWNWARD), -off};
-        const std::array<Real, 2> high{directed_sum(used, FE_UPWARD), off};
-        return {directed_sum(std::span<const Real>(low), FE_DOWNWARD),
-                directed_sum(std::span<const Real>(high), FE_UPWARD)};
-    }
-    Real partial = 0;
-    const Real sum = nearest_sum(used, partial);
-    Real bound = 0;
-    if (drift != nullptr || (rounding == Rounding::safe && count == 3))
-        bound = partial * (2 * std::numeric_limits<Real>::epsilon()) + off;
-    return {sum - bound, sum + bound};
-}
-
-/// The bound on a body's drift is an input here, not recomputed independently; a separate test compares it
-/// with the exact truth.
-template<class Real>
-std::array<Real, 3> drift_in(const Scene& scene, const Frame& frame, const Geometry& geometry,
-                             std::size_t body) {
-    const auto& mesh = scene.meshes[scene.bodies[body].mesh];
-    const auto bound = scene.bodies[body].deformable
-                           ? drift_bound(frame.deformed[body], geometry.precision)
-                           : drift_bound(frame.poses[body], reach_of(mesh.vertices), geometry.precision);
-    return {static_cast<Real>(bound[0]), static_cast<Real>(bound[1]), static_cast<Real>(bound[2])};
-}
-
-/// Slabs of all tetrahedra of one body, each computed separately from its own vertices.
-template<class Real>
-Bounds<Real> bounds_of(const Scene& scene, const Frame& frame, const Geometry& geometry, std::size_t body) {
-    const auto axes = directions(geometry);
-    Bounds<Real> bounds;
-    bounds.axes = axes.size();
-    bounds.published = geometry.rounding == Rounding::published;
-    const bool drifts = geometry.placement == Placement::exact;
-    const auto drift = drifts ? drift_in<Real>(scene, frame, geometry, body) : std::array<Real, 3>{};
-    bounds.vertices = world_vertices<Real>(scene, frame, body);
-    const auto& tetrahedra = scene.meshes[scene.bodies[body].mesh].tetrahedra;
-    bounds.slabs.resize(tetrahedra.size() * 2 * axes.size());
-    bounds.whole.assign(axes.size(), std::numeric_limits<Real>::infinity());
-    bounds.whole.insert(bounds.whole.end(), axes.size(), -std::numeric_limits<Real>::infinity());
-    std::vector<bool> skipped(tetrahedra.size());
-    if (!frame.skipped.empty())
-        for (const auto t : frame.skipped[body]) skipped[t] = true;
-    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-        for (std::size_t t = 0; t < tetrahedra.size(); ++t) {
-            Real lower = std::numeric_limits<Real>::infinity();
-            Real upper = -lower;
-            for (const auto vertex : tetrahedra[t]) {
-                if (skipped[t]) break; // an empty slab overlaps nothing
-                const auto [low, high] = project(bounds.vertices[vertex], axes[axis], geometry.rounding,
-                                                 drifts ? &drift : nullptr);
-                lower = std::min(lower, low);
-                upper = std::max(upper, high);
-            }
-            bounds.slabs[t * 2 * axes.size() + axis] = lower;
-            bounds.slabs[t * 2 * axes.size() + axes.size() + axis] = upper;
-            bounds.whole[axis] = std::min(bounds.whole[axis], lower);
-            bounds.whole[axes.size() + axis] = std::max(bounds.whole[axes.size() + axis], upper);
-        }
-    }
-    return bounds;
-}
+using reference_bounds::apart;
+using reference_bounds::Bounds;
+using reference_bounds::overlapping;
 
 /// Tetrahedra of one body that overlap the bounds of another body, sorted by lower bound on the first axis.
 template<class Real>
@@ -287,11 +150,12 @@ std::vector<Pair> of_boundary(const Scene& scene, std::vector<Pair> pairs) {
 namespace {
 
 template<class Real>
-ReferenceAnswer answer_in(const Scene& scene, const Frame& frame, const Geometry& geometry, bool contacts,
-                          Method method, const ContactSettings& settings) {
+ReferenceAnswer answer_in(const Scene& scene, const FrameInput& input, const Geometry& geometry,
+                          bool contacts, Method method, const ContactSettings& settings) {
     std::vector<Bounds<Real>> bounds(scene.bodies.size());
-    parallel_for(bounds.size(),
-                 [&](std::size_t body) { bounds[body] = bounds_of<Real>(scene, frame, geometry, body); });
+    parallel_for(bounds.size(), [&](std::size_t body) {
+        bounds[body] = reference_bounds::bounds_of<Real>(scene, input, geometry, body);
+    });
     std::vector<std::vector<Pair>> found(bounds.size());
     parallel_for(bounds.size(), [&](std::size_t index) {
         const auto a = static_cast<std::uint32_t>(index);
@@ -333,11 +197,11 @@ ReferenceAnswer answer_in(const Scene& scene, const Frame& frame, const Geometry
 
 } // namespace
 
-ReferenceAnswer reference(const Scene& scene, const Frame& frame, const Geometry& geometry, bool contacts,
-                          Method method, const ContactSettings& settings) {
+ReferenceAnswer reference(const Scene& scene, const FrameInput& input, const Geometry& geometry,
+                          bool contacts, Method method, const ContactSettings& settings) {
     return geometry.precision == Precision::fp64
-               ? answer_in<double>(scene, frame, geometry, contacts, method, settings)
-               : answer_in<float>(scene, frame, geometry, contacts, method, settings);
+               ? answer_in<double>(scene, input, geometry, contacts, method, settings)
+               : answer_in<float>(scene, input, geometry, contacts, method, settings);
 }
 
 Method reference_method(const Scene& scene) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "algorithms/answer/digest.h"
+#include "algorithms/bodies/frame_input.h"
 #include "algorithms/bounds/geometry.h"
 #include "algorithms/narrow_phase/contact_settings.h"
 #include "scenes/scene.h"
@@ -28,9 +29,10 @@ enum class Method {
 
 /// Finds every pair of tetrahedra of different bodies that may meet and whose leaf k-DOPs overlap, and
 /// filters them if settings.walked is not all. With settings.self also those of one body that share no
-/// vertex. Runs on all cores, and shares no code with kernels, hierarchies or broad phase.
-ReferenceAnswer reference(const Scene& scene, const Frame& frame, const Geometry& geometry, bool contacts,
-                          Method method, const ContactSettings& settings = {});
+/// vertex. With a successor in `input` (motion=linear) k-DOPs contain both frames and the path between.
+/// Runs on all cores, and shares no code with kernels, hierarchies or broad phase.
+ReferenceAnswer reference(const Scene& scene, const FrameInput& input, const Geometry& geometry,
+                          bool contacts, Method method, const ContactSettings& settings = {});
 
 /// The pairs whose tetrahedra are walked by Walked::boundary, in the same order: both have boundary faces, or
 /// are of a mesh without any.

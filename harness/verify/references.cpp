@@ -27,11 +27,13 @@ References::References(const Scene& scene, const FrameRange& range, const std::f
 /// Identifies the frame by its content, because its flawed tetrahedra may be skipped or not.
 std::string References::cache_key(const Key& key) const {
     const auto& [geometry, contacts, index] = key;
+    const bool moves = geometry.motion == Motion::linear;
     return fmt::format(
-        "frame {:016x}, k {} {}, precision {}, rounding {}, placement {}, origin {}, rule {}, "
+        "frame {:016x}{}, k {} {}, precision {}, rounding {}, placement {}, origin {}, rule {}, "
         "decision {}, walked {}{}",
-        digest_of(*range_.frame(index)), geometry.k, geometry.coordinate_axes,
-        static_cast<int>(geometry.precision), static_cast<int>(geometry.rounding),
+        digest_of(*range_.frame(index)),
+        moves ? fmt::format(" to {:016x}", digest_of(*range_.frame(index + 1))) : "", geometry.k,
+        geometry.coordinate_axes, static_cast<int>(geometry.precision), static_cast<int>(geometry.rounding),
         static_cast<int>(geometry.placement), static_cast<int>(geometry.origin),
         static_cast<int>(contacts.rule), static_cast<int>(contacts.decision),
         static_cast<int>(contacts.walked),
@@ -43,8 +45,8 @@ const ReferenceAnswer& References::answer(const Geometry& geometry, const Contac
     const Key key{geometry, contacts, index};
     if (last_ && last_->first == key) return last_->second;
     last_.reset(); // frees memory before the next answer allocates
-    const auto frame = range_.frame(index, geometry.origin);
-    last_.emplace(key, reference(scene_, *frame, geometry, true, reference_method(scene_), contacts));
+    const auto state = range_.state(index, geometry.motion, geometry.origin);
+    last_.emplace(key, reference(scene_, state.input(), geometry, true, reference_method(scene_), contacts));
     return last_->second;
 }
 

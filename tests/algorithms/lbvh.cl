@@ -3,7 +3,7 @@
 // queries body b's tree.
 #include "backends/portable.h"
 #include "algorithms/answer/emit.clh"
-#include "algorithms/bodies/body.clh"
+#include "algorithms/bounds/leaf.clh"
 #include "algorithms/bounds/volume.clh"
 #include "algorithms/broad_phase/body_pairs.clh"
 
@@ -37,20 +37,14 @@ DEVICE GLOBAL const uint* children_of(GLOBAL const uint* children, GLOBAL const 
 
 // Empty slabs (lower end above upper end) overlap nothing and enlarge no union. Negative zero becomes
 // positive, so equal slabs have equal bits.
-DEVICE void bound_tetrahedron(GLOBAL const real* poses, GLOBAL const uint* tetrahedra,
-                              GLOBAL const real* vertices, const BodyTetrahedron* one, int is_active,
+DEVICE void bound_tetrahedron(const Solids* solids, const BodyTetrahedron* one, int is_active,
                               GLOBAL real* node) {
     real slabs[K];
     for (int axis = 0; axis < DIRECTIONS; ++axis) {
         slabs[axis] = REAL_INFINITY;
         slabs[axis + DIRECTIONS] = -REAL_INFINITY;
     }
-    if (is_active) {
-        Point corner[4];
-        load_corners(poses, tetrahedra, vertices, one, corner);
-        const Point drift = drift_at(poses, one->body);
-        for (int i = 0; i < 4; ++i) widen_by_point(corner[i], drift, slabs, slabs + DIRECTIONS);
-    }
+    if (is_active) widen_by_tetrahedron(solids, one, slabs);
     for (int word = 0; word < K; ++word) node[word] = slabs[word] + (real)0;
 }
 
@@ -72,7 +66,9 @@ DEVICE void merge_depth(GLOBAL real* nodes, GLOBAL const uint* children, GLOBAL 
 KERNEL void refit_trees(GLOBAL real* nodes, GLOBAL real* volumes, GLOBAL const uint* trees,
                         GLOBAL const uint* children, GLOBAL const uint* depths, GLOBAL const uint* skipped,
                         GLOBAL const uint* chosen, GLOBAL const uint* bodies, GLOBAL const real* poses,
-                        GLOBAL const uint* tetrahedra, GLOBAL const real* vertices) {
+                        GLOBAL const uint* tetrahedra, GLOBAL const real* vertices,
+                        GLOBAL const real* next_poses, GLOBAL const real* next_vertices) {
+    const Solids solids = {tetrahedra, poses, vertices, next_poses, next_vertices};
     const uint body = chosen[GROUP_ID];
     GLOBAL const uint* tree = tree_of(trees, body);
     GLOBAL real* own = nodes + (ulong)tree[TREE_NODES] * K;
@@ -80,8 +76,7 @@ KERNEL void refit_trees(GLOBAL real* nodes, GLOBAL real* volumes, GLOBAL const u
     for (uint item = LOCAL_ID; item < items; item += GROUP_SIZE) {
         const uint leaf = items - 1u + item;
         const BodyTetrahedron one = tetrahedron_of(((GLOBAL const WordRow*)bodies)[body], body, item);
-        bound_tetrahedron(poses, tetrahedra, vertices, &one, skipped[tree[TREE_NODES] + leaf] == 0u,
-                          own + (ulong)leaf * K);
+        bound_tetrahedron(&solids, &one, skipped[tree[TREE_NODES] + leaf] == 0u, own + (ulong)leaf * K);
     }
     BARRIER_GLOBAL;
     GLOBAL const uint* first = depths + tree[TREE_DEPTHS];

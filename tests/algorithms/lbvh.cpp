@@ -180,7 +180,7 @@ void StoredTrees::do_refit(const Frame& frame, bool all) {
     const auto bodies = all || needs_full_refit_ ? bodies_.count() : moving_bodies_;
     if (bodies == 0) return;
     const StageScope scope(device_, Stage::refit);
-    const std::array<Argument, 11> arguments{nodes_,
+    const std::array<Argument, 13> arguments{nodes_,
                                              volumes_,
                                              tree_table_,
                                              children_,
@@ -190,7 +190,9 @@ void StoredTrees::do_refit(const Frame& frame, bool all) {
                                              bodies_.row_table(),
                                              bodies_.poses(),
                                              bodies_.tetrahedra(),
-                                             bodies_.vertices()};
+                                             bodies_.vertices(),
+                                             bodies_.next_poses(),
+                                             bodies_.next_vertices()};
     device_.launch(kernel_, {bodies, group_size_}, arguments);
     needs_full_refit_ = false;
 }

@@ -96,10 +96,10 @@ std::int64_t Trials::run(std::size_t candidate) {
     std::int64_t sum = 0;
     std::uint64_t pairs = 0, contacts = 0;
     for (std::size_t i = 0; i < frames_; ++i) {
-        const auto frame = range_.frame(i);
+        const auto frame = range_.state(i, session.settings()[parameters::motion]);
         for (auto* device : candidates_[candidate].devices) device->finish();
         const auto begin = Clock::now();
-        const auto result = session.run(*frame);
+        const auto result = session.run(frame.input());
         sum += since(begin);
         pairs += pairs_of(result, team_);
         contacts += result.contacts;
