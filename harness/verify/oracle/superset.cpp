@@ -48,6 +48,13 @@ Boxes::Boxes(std::span<const TetraCorners> corners, std::span<const std::uint32_
     }
 }
 
+std::vector<std::array<std::uint32_t, 2>> invalid_of(std::span<const Boxes> boxes) {
+    std::vector<std::array<std::uint32_t, 2>> result;
+    for (std::uint32_t body = 0; body < boxes.size(); ++body)
+        for (const auto tetrahedron : boxes[body].invalid) result.push_back({body, tetrahedron});
+    return result;
+}
+
 /// Empty boxes overlap nothing, so that invalid and skipped tetrahedra need no special case.
 std::vector<std::uint32_t> near(const Boxes& body, const Box& other) {
     std::vector<std::uint32_t> result;

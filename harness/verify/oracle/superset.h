@@ -28,6 +28,9 @@ struct Boxes {
                    double off = 0);
 };
 
+/// (body, tetrahedron) of all invalid tetrahedra, sorted; `boxes` is by body.
+std::vector<std::array<std::uint32_t, 2>> invalid_of(std::span<const Boxes> boxes);
+
 /// Valid tetrahedra of a body whose boxes overlap the other box, sorted by their lower bounds along x.
 std::vector<std::uint32_t> near(const Boxes& body, const Box& other);
 
