@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace tandem::oracle {
@@ -18,6 +19,13 @@ void add(Box& box, const std::array<double, 3>& point) {
         box[3 + axis] = std::max(box[3 + axis], point[axis]);
     }
 }
+
+void add(Box& box, const Box& other) {
+    add(box, std::array{other[0], other[1], other[2]});
+    add(box, std::array{other[3], other[4], other[5]});
+}
+
+bool is_empty(const Box& box) { return box[0] > box[3]; }
 
 /// Widens by at least `off`, rounding outwards.
 void widen(Box& box, double off) {
@@ -43,8 +51,23 @@ Boxes::Boxes(std::span<const TetraCorners> corners, std::span<const std::uint32_
         auto& box = tetrahedra[i];
         for (const auto& corner : corners[i]) add(box, corner);
         if (off > 0) widen(box, off);
-        add(whole, {box[0], box[1], box[2]});
-        add(whole, {box[3], box[4], box[5]});
+        add(whole, box);
+    }
+}
+
+void Boxes::join(const Boxes& other) {
+    std::vector<std::uint32_t> both;
+    std::ranges::set_union(invalid, other.invalid, std::back_inserter(both));
+    invalid = std::move(both);
+    whole = empty_box;
+    for (std::size_t i = 0; i < tetrahedra.size(); ++i) {
+        auto& box = tetrahedra[i];
+        if (is_empty(box) || is_empty(other.tetrahedra[i])) {
+            box = empty_box;
+            continue;
+        }
+        add(box, other.tetrahedra[i]);
+        add(whole, box);
     }
 }
 

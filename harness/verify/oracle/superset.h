@@ -26,6 +26,9 @@ struct Boxes {
     /// `skipped` must be ascending.
     explicit Boxes(std::span<const TetraCorners> tetrahedra, std::span<const std::uint32_t> skipped = {},
                    double off = 0);
+
+    /// Boxes around these and others of the same body. A tetrahedron that is empty in one of both is empty.
+    void join(const Boxes& other);
 };
 
 /// (body, tetrahedron) of all invalid tetrahedra, sorted; `boxes` is by body.
