@@ -79,6 +79,8 @@ Signs signs(const Outline& a, const Outline& b) {
     return result;
 }
 
+double slack_of(double error) { return 2 * error * (1 + 0x1p-40); }
+
 /// The undecided faces of A, one bit each. No value when a face separates the two tetrahedra.
 std::optional<FacetSet> try_faces(const Outline& a, const TetraCorners& corners_a,
                                   const TetraCorners& corners_b, double size) {
@@ -160,7 +162,7 @@ double extent(const TetraCorners& a, const TetraCorners& b) {
 Filtered filter(const TetraCorners& a, const TetraCorners& b, double error) {
     Filtered result;
     const double size = extent(a, b);
-    const double slack = 2 * error * (1 + 0x1p-40);
+    const double slack = slack_of(error);
     if (!(size + slack <= largest)) return result;
     const Outline outline_a(a, slack), outline_b(b, slack);
     result.volume[0] = outline_a.orientation != 0;
@@ -175,6 +177,20 @@ Filtered filter(const TetraCorners& a, const TetraCorners& b, double error) {
     result.disjoint = false;
     result.unsure = *faces_a | *faces_b << 4 | *products << 8;
     return result;
+}
+
+bool certainly_inside(const Vector<double>& point, const TetraCorners& corners, double error) {
+    const double size = extent(corners, {point, point, point, point});
+    const double slack = slack_of(error);
+    if (!(size + slack <= largest)) return false;
+    const Outline outline(corners, slack);
+    for (unsigned face = 0; face < 4; ++face) {
+        const auto& normal = outline.normal[face];
+        const auto difference = minus(point, corners[faces[face][0]]);
+        if (certain(dot(normal.vector, difference), normal.bound(size)) * outline.inside(face) <= 0)
+            return false;
+    }
+    return true;
 }
 
 int certain_orientation(const TetraCorners& corners) {

@@ -30,4 +30,8 @@ Filtered filter(const TetraCorners& a, const TetraCorners& b, double error = 0);
 /// The sign of orientation() in facets.h when double arithmetic is certain; 0 when uncertain. The same bound.
 int certain_orientation(const TetraCorners& corners);
 
+/// Whether a point is certainly inside a tetrahedron, for all corners that differ from these by at most
+/// `error`. The same bound.
+bool certainly_inside(const Vector<double>& point, const TetraCorners& corners, double error);
+
 } // namespace tandem::geometry

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "geometry/intervals.h"
 
+#include "geometry/common_point.h"
+#include "geometry/facets.h"
 #include "geometry/filter.h"
 
 #include <algorithm>
@@ -170,8 +172,9 @@ bool is_separated(const ScaledPair& pair, const Interval& interval) {
 }
 
 bool overlap_at_middle(const ScaledPair& pair, const Interval& interval) {
-    const auto found = filter(interval.at_middle[0], interval.at_middle[1], pair.error());
-    return !found.disjoint && found.unsure == 0 && found.volume[0] && found.volume[1];
+    const auto& [a, b] = interval.at_middle;
+    const auto point = common_point(a, b);
+    return point && certainly_inside(*point, a, pair.error()) && certainly_inside(*point, b, pair.error());
 }
 
 } // namespace

@@ -136,15 +136,17 @@ int Sturm::count(const DyadicInterval& interval) const {
     return variations(interval.low()) - variations(interval.high());
 }
 
-Root::Root(const Polynomial& p, const DyadicInterval& interval)
-    : polynomial_(p), sturm_(p), interval_(interval) {
+Root::Root(const Polynomial& square_free, const DyadicInterval& interval)
+    : polynomial_(square_free), interval_(interval) {
     constexpr unsigned fine = 12; // few signs of other polynomials need finer intervals
     while (interval_.exponent < fine) interval_ = half_of(interval_);
 }
 
+/// The sign changes at the only root, and nowhere else above the lower end.
 DyadicInterval Root::half_of(const DyadicInterval& interval) const {
-    auto half = interval.half(0);
-    return sturm_.count(half) > 0 ? half : interval.half(1);
+    const int middle = polynomial_.sign_at(interval.half(0).high());
+    const bool below = middle == 0 || middle == polynomial_.sign_at(interval.high());
+    return interval.half(below ? 0 : 1);
 }
 
 bool Root::is_root_of(const Polynomial& other) const {
@@ -171,7 +173,7 @@ std::vector<Root> roots_in_unit(const Polynomial& p) {
         const auto interval = open.back();
         open.pop_back();
         const int count = sturm.count(interval);
-        if (count == 1) roots.emplace_back(p, interval);
+        if (count == 1) roots.emplace_back(sturm.square_free(), interval);
         if (count <= 1) continue;
         open.push_back(interval.half(1));
         open.push_back(interval.half(0)); // next, so that roots are ascending

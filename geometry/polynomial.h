@@ -58,17 +58,19 @@ public:
     explicit Sturm(const Polynomial& p);
     /// Number of roots in an interval without its lower end.
     int count(const DyadicInterval& interval) const;
+    /// The polynomial with each of its roots once, up to a constant factor.
+    const Polynomial& square_free() const { return chain_.front(); }
 
 private:
     int variations(const Dyadic& x) const;
 
-    std::vector<Polynomial> chain_; ///< starts with the square-free part
+    std::vector<Polynomial> chain_; ///< starts with the square-free polynomial
 };
 
 /// An algebraic number: the only root of a polynomial in an interval without its lower end.
 class Root {
 public:
-    Root(const Polynomial& p, const DyadicInterval& interval);
+    Root(const Polynomial& square_free, const DyadicInterval& interval);
 
     /// The exact sign of another polynomial here. Halves the interval until the other one has a sign on all
     /// of it, unless the two have this root in common.
@@ -79,7 +81,6 @@ private:
     bool is_root_of(const Polynomial& other) const;
 
     Polynomial polynomial_;
-    Sturm sturm_;
     DyadicInterval interval_;
 };
 

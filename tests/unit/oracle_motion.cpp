@@ -188,7 +188,7 @@ TEST(OracleMotion, RandomPairsAgreeWithManyTimes) {
     Random random(11);
     std::array<unsigned, 2> counts{};
     unsigned only_exact = 0;
-    for (int round = 0; round < 600; ++round) {
+    for (int round = 0; round < 300; ++round) {
         MovingPair pair;
         const int shift = static_cast<int>(random.next() % 48);
         for (auto* corners : {&pair.a.from, &pair.a.to, &pair.b.from, &pair.b.to})
@@ -216,7 +216,7 @@ TEST(OracleMotion, RandomPairsAgreeWithManyTimes) {
 TEST(OracleMotion, DegenerateRandomPairsAgreeInEveryForm) {
     Random random(13);
     std::array<unsigned, 2> counts{};
-    for (int round = 0; round < 500; ++round) {
+    for (int round = 0; round < 300; ++round) {
         MovingPair pair;
         for (auto* corners : {&pair.a.from, &pair.a.to, &pair.b.from, &pair.b.to})
             for (auto& corner : *corners)
