@@ -14,7 +14,7 @@ namespace {
 using Path = Vector<Polynomial>;
 using Paths = std::array<Path, 4>;
 
-/// A contact of two features at all times when every polynomial of `zero` is zero, none of `least` is
+/// A contact of two features at any time when every polynomial of `zero` is zero, none of `least` is
 /// negative, and `positive` is positive.
 struct FeatureContact {
     std::vector<Polynomial> zero, least;
@@ -25,14 +25,13 @@ struct FeatureContact {
                && std::ranges::all_of(least, [&](const auto& g) { return time.sign_of(g) >= 0; })
                && time.sign_of(positive) > 0;
     }
-    bool is_at_root_of(const Polynomial& p) const {
-        return std::ranges::any_of(roots_in_unit(p), [&](const Root& time) { return is_at(time); });
-    }
+    /// At a root of an equation that is not zero at all times. Without one the answer is no, because a
+    /// contact of smaller features begins then.
     bool happens() const {
         if (std::ranges::any_of(least, [](const auto& g) { return sign_on(g) < 0; })) return false;
-        for (const auto& f : zero)
-            if (!f.is_zero()) return is_at_root_of(f);
-        return std::ranges::any_of(least, [&](const auto& g) { return !g.is_zero() && is_at_root_of(g); });
+        const auto f = std::ranges::find_if(zero, [](const auto& g) { return !g.is_zero(); });
+        if (f == zero.end()) return false;
+        return std::ranges::any_of(roots_in_unit(*f), [&](const Root& time) { return is_at(time); });
     }
 };
 

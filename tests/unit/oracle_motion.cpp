@@ -170,7 +170,17 @@ TEST(OracleMotion, WithoutVolume) {
     expect_meeting(passing(point, line, 0), Meeting::meeting);
     expect_meeting(passing(line, line, 1), Meeting::apart);
     expect_meeting(passing(point, point, 1), Meeting::apart);
-    auto inverting = moved(unit, 0, 0, 0);
+    // On one line in one instant only: a corner on an edge, away from the edge's corners.
+    auto above_line = line;
+    for (auto& corner : above_line) corner = {0.25 + 0.125 * corner[0], 0, 4};
+    expect_meeting({straight(line, line), straight(moved(above_line, 0, 0, -8), above_line)},
+                   Meeting::meeting);
+    // In one plane at all times, where only their conditions change.
+    const TetraCorners flat{{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {1, 1, 0}}};
+    expect_meeting(passing(flat, flat, 1), Meeting::meeting);
+    expect_meeting(passing(flat, flat, 2), Meeting::meeting);
+    expect_meeting(passing(flat, flat, 2 + 0x1p-40), Meeting::apart);
+    auto inverting = unit;
     inverting[3][2] = -1;
     const auto above = moved(unit, 0.25, 0.25, 1 + 0x1p-30), below = moved(unit, 0.25, 0.25, -2);
     expect_meeting({straight(unit, inverting), straight(above, above)}, Meeting::apart);

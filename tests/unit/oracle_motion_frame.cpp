@@ -257,20 +257,29 @@ TEST(OracleMotionFrame, EqualsPairsOneByOne) {
     }
 }
 
+/// Tetrahedra that either frame skips, and those with a vertex that is not finite in one frame.
 TEST(OracleMotionFrame, SkippedAndInvalidTetrahedraAreInNoPair) {
     PassingBoxes passing;
     auto& [from, to] = passing.frames;
+    auto expected = motion_truth(passing.scene, from, to, Precision::fp32).colliding;
     from.skipped = {{3, 4}, {}, {}};
-    to.skipped = {{}, {5}, {}};
+    to.skipped = {{}, {20, 21}, {}};
     to.deformed[1][0].x() = std::numeric_limits<double>::infinity();
     const auto truth = motion_truth(passing.scene, from, to, Precision::fp32);
     ASSERT_FALSE(truth.invalid.empty());
-    EXPECT_GT(truth.colliding.size(), 100u);
-    for (const auto& p : truth.colliding) {
-        EXPECT_FALSE(p.body_a == 0 && (p.tet_a == 3 || p.tet_a == 4));
-        EXPECT_FALSE(p.body_b == 1 && p.tet_b == 5);
-        EXPECT_FALSE(std::ranges::binary_search(truth.invalid, std::array{p.body_b, p.tet_b}));
-    }
+    const auto first = std::erase_if(
+        expected, [](const Pair& p) { return p.body_a == 0 && (p.tet_a == 3 || p.tet_a == 4); });
+    const auto last = std::erase_if(expected, [](const Pair& p) {
+        return (p.body_a == 1 && (p.tet_a == 20 || p.tet_a == 21))
+               || (p.body_b == 1 && (p.tet_b == 20 || p.tet_b == 21));
+    });
+    std::erase_if(expected, [&](const Pair& p) {
+        return std::ranges::binary_search(truth.invalid, std::array{p.body_a, p.tet_a})
+               || std::ranges::binary_search(truth.invalid, std::array{p.body_b, p.tet_b});
+    });
+    EXPECT_GT(first, 10u);
+    EXPECT_GT(last, 10u);
+    EXPECT_TRUE(truth.colliding == expected) << truth.colliding.size() << " " << expected.size();
 }
 
 TEST(OracleMotionFrame, RefusesTooLittleMemoryAndReportsProgress) {
