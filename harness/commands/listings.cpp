@@ -131,7 +131,9 @@ Json hard_json(const HardFamily& family) {
             {"range", {family.knob.least, family.knob.most}},
             {"truth", name_of(family.truth)},
             {"metric", family.metric},
-            {"fails", family.fails}};
+            {"fails", family.fails},
+            {"self", family.self},
+            {"motion", family.motion}};
 }
 
 void print_hard() {

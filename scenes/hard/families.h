@@ -15,5 +15,8 @@ std::span<const HardFamily> shape_families();   ///< c, shapes and sizes; decisi
 std::span<const HardFamily> contact_families(); ///< d
 std::span<const HardFamily> deforming_families(); ///< e
 std::span<const HardFamily> capacity_families();  ///< f
+std::span<const HardFamily> one_body_families();  ///< g
+std::span<const HardFamily> moving_families();    ///< h, on straight paths
+std::span<const HardFamily> turning_families();   ///< h, with rotations and equal speeds
 
 } // namespace tandem::hard

@@ -39,10 +39,12 @@ struct HardKnob {
 };
 
 /// A family of hard cases, one row of the catalogue. A family of pairs has `pair`, a family of scenes has
-/// `scene`. Fields have the order of a row, since padding does not matter for 43 objects.
+/// `scene`. Fields have the order of a row, since padding does not matter for 58 objects.
 struct HardFamily { // NOLINT(clang-analyzer-optin.performance.Padding)
     unsigned row;   ///< row in the catalogue, from 1
-    char group;     ///< a k-DOPs, b tolerances, c decision, d contacts, e deforming, f queues and stacks
+    /// a k-DOPs, b tolerances, c decision, d contacts, e deforming, f queues and stacks, g pairs of one body,
+    /// h motion between two frames
+    char group;
     std::string_view name; ///< "touch": the scene kind is hard:touch
     std::string_view summary;
     HardKnob knob;
@@ -55,11 +57,15 @@ struct HardFamily { // NOLINT(clang-analyzer-optin.performance.Padding)
     /// The pose of both bodies in a frame, for families with rigid bodies instead of world vertices.
     Pose (*pose)(Random& random, double difficulty) = nullptr;
     Scene (*scene)(Random& random, double difficulty) = nullptr;
-    /// Number of overlapping tetrahedron pairs in every frame, when the construction defines it.
+    /// Number of tetrahedron pairs that meet in every frame, when the construction defines it. With `self` it
+    /// includes pairs of one body. With `motion` it is the number on the way from frame 0 to frame 1, and no
+    /// pair meets in either frame.
     std::uint64_t (*meeting)(double difficulty) = nullptr;
+    bool self = false;   ///< the intended pairs are of one body, which setting self finds
+    bool motion = false; ///< the intended pairs meet between frame 0 and frame 1
 };
 
-/// All 43, in the order of the catalogue.
+/// All 58, in the order of the catalogue.
 std::span<const HardFamily> hard_families();
 
 /// The family of that name. Throws InputError with the nearest name when there is none.

@@ -106,9 +106,13 @@ TEST_P(HardAlgorithms, MissNothing) {
                 // In short form, devices that compile use one k per family, alternating between families.
                 if (!long_form() && GetParam() != "host" && (k == "8") == (number % 2 == 0)) continue;
                 SCOPED_TRACE(fmt::format("{} {} k={}", family.name, traversal->name(), k));
-                expect_none_missed(
-                    *traversal, scene, std::array{scene.frame(0), scene.frame(scene.frame_count - 1)},
-                    {{"k", k}, {"work_items", "64"}, {"pair_capacity", "8192"}, {"contact_rule", "none"}});
+                expect_none_missed(*traversal, scene,
+                                   std::array{scene.frame(0), scene.frame(scene.frame_count - 1)},
+                                   {{"k", k},
+                                    {"self", family.self ? "on" : "off"},
+                                    {"work_items", "64"},
+                                    {"pair_capacity", "8192"},
+                                    {"contact_rule", "none"}});
             }
     }
     EXPECT_GT(met_, 10000u);

@@ -4,7 +4,7 @@
 
 #include "algorithms/bounds/geometry.h"
 #include "geometry/contact_truth.h"
-#include "harness/verify/oracle/frame_truth.h"
+#include "harness/verify/oracle/motion_truth.h"
 #include "harness/verify/world_vertices.h"
 
 #include <gtest/gtest.h>
@@ -200,6 +200,57 @@ double with_tolerance(const HardFamily& family, double e) {
     });
 }
 
+/// Pairs that meet when coordinates are multiples of 2^-12: of one body, or on the way.
+double meeting_when_rounded(const HardFamily& family, double e) {
+    const auto scene = scene_of(family, e);
+    const auto rounded = [&](std::size_t index) {
+        auto frame = scene.frame(index);
+        for (auto& vertices : frame.deformed)
+            for (auto& v : vertices)
+                for (auto& x : v) x = std::round(x * 0x1p12) / 0x1p12;
+        return frame;
+    };
+    const auto self = family.self ? SelfPairs::on : SelfPairs::off;
+    return static_cast<double>(
+        motion_truth(scene, rounded(0), rounded(scene.frame_count - 1), Precision::fp32, self)
+            .colliding.size());
+}
+
+double meeting_within_bodies(const HardFamily& family, double e) {
+    const auto scene = scene_of(family, e);
+    const auto truth = frame_truth(scene, scene.frame(0),
+                                   {Precision::fp32, Placement::rounded, Origin::world, SelfPairs::on});
+    return static_cast<double>(truth.touching.size() + truth.overlapping.size());
+}
+
+/// Largest distance of a vertex of body 0 from frame 0 to frame 1, without the motion of body 1.
+double way(const HardFamily& family, double e) {
+    const auto scene = scene_of(family, e);
+    std::array<std::vector<std::array<double, 3>>, 2> at[2];
+    for (unsigned end = 0; end < 2; ++end)
+        for (unsigned body = 0; body < 2; ++body)
+            at[end][body] = world_vertices<double>(scene, scene.frame(end), body);
+    double most = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+        double square = 0;
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            const double moved = at[1][0][i][axis] - at[0][0][i][axis];
+            square += std::pow(moved - (at[1][1][0][axis] - at[0][1][0][axis]), 2);
+        }
+        most = std::max(most, std::sqrt(square));
+    }
+    return most;
+}
+
+double flatness_of_body(const HardFamily& family, double e) {
+    return -volume(scene_of(family, e).meshes.front());
+}
+
+double largest_coordinate(const HardFamily& family, double e) {
+    const auto scene = scene_of(family, e);
+    return scene.frame(1).deformed[0][0].cwiseAbs().maxCoeff();
+}
+
 /// A family, a metric, and difficulties at which it is low and high.
 struct Case {
     const char* family;
@@ -249,7 +300,22 @@ const std::vector<Case> cases{{"slab-touch", missed_by_slabs(18, true), 1, 1000}
                               {"one-huge", meeting, 3, 30},
                               {"equal-codes", meeting, 2, 20},
                               {"exact-capacity", meeting, 7, 8},
-                              {"counter-wrap", meeting, 4, 5}};
+                              {"counter-wrap", meeting, 4, 5},
+                              {"nearly-shared", meeting_when_rounded, 1, 6},
+                              {"folded-flat", meeting_when_rounded, 1, 6},
+                              {"inverted-elements", meeting_within_bodies, 0.25, 3},
+                              {"coil", meeting_when_rounded, 1, 6},
+                              {"wedges", flatness_of_body, 1, 3},
+                              {"grazing-vertex", meeting_when_rounded, 4, 20},
+                              {"grazing-edge", meeting_when_rounded, 4, 20},
+                              {"tunnelling", meeting_when_rounded, 4, 20},
+                              {"one-instant", meeting_when_rounded, 4, 20},
+                              {"inverting-on-the-way", meeting_when_rounded, 4, 20},
+                              {"sliding-edges", meeting_when_rounded, 4, 20},
+                              {"half-turn", way, 16, 64},
+                              {"far-lever", way, 16, 1024},
+                              {"tiny-turn", way, 14, 4},
+                              {"equal-speed", largest_coordinate, 3, 20}};
 
 TEST(HardDifficulty, MovesItsMetric) {
     ASSERT_EQ(cases.size(), hard_families().size());
