@@ -51,7 +51,7 @@ std::uint64_t pairs_of_equal_positions(const Mesh& mesh) {
         place.push_back(
             numbers.emplace(std::array{v.x(), v.y(), v.z()}, static_cast<std::uint32_t>(numbers.size()))
                 .first->second);
-    const auto share = [](const Tetrahedron& t, const Tetrahedron& u) {
+    const auto have_common = [](const Tetrahedron& t, const Tetrahedron& u) {
         return std::ranges::any_of(t, [&](auto vertex) { return std::ranges::find(u, vertex) != u.end(); });
     };
     const auto at_places = [&](Tetrahedron t) {
@@ -62,7 +62,7 @@ std::uint64_t pairs_of_equal_positions(const Mesh& mesh) {
     for (std::size_t i = 0; i < mesh.tetrahedra.size(); ++i)
         for (std::size_t j = 0; j < i; ++j) {
             const auto &t = mesh.tetrahedra[i], &u = mesh.tetrahedra[j];
-            count += !share(t, u) && share(at_places(t), at_places(u)) ? 1 : 0;
+            count += !have_common(t, u) && have_common(at_places(t), at_places(u)) ? 1 : 0;
         }
     return count;
 }

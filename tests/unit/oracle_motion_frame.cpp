@@ -285,11 +285,11 @@ TEST(OracleMotionFrame, SkippedAndInvalidTetrahedraAreInNoPair) {
 TEST(OracleMotionFrame, RefusesTooLittleMemoryAndReportsProgress) {
     const PassingBoxes passing;
     const auto& [from, to] = passing.frames;
-    EXPECT_THROW(motion_truth(passing.scene, from, to, Precision::fp32, SelfPairs::off, {}, 1000),
+    EXPECT_THROW(motion_truth(passing.scene, from, to, Precision::fp32, SelfPairs::off, {.memory = 1000}),
                  InputError);
     double last = 0;
     const auto truth = motion_truth(passing.scene, from, to, Precision::fp32, SelfPairs::off,
-                                    [&](double fraction, std::uint64_t) { last = fraction; });
+                                    {.report = [&](double fraction, std::uint64_t) { last = fraction; }});
     EXPECT_EQ(last, 1);
     EXPECT_GT(truth.tiers[static_cast<unsigned>(MeetingTier::intervals)], 0u);
 }

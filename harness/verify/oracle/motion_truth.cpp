@@ -100,14 +100,14 @@ void add_meeting(const MovingBodies& bodies, std::span<const Pair> pairs, Motion
 } // namespace
 
 MotionTruth motion_truth(const Scene& scene, const Frame& from, const Frame& to, Precision precision,
-                         SelfPairs self, const Report& report, std::uint64_t memory) {
+                         SelfPairs self, const TruthOptions& options) {
     const auto fixed_bytes = tetrahedron_count(scene) * 2 * (sizeof(TetraCorners) + sizeof(Box));
-    check_memory(scene, fixed_bytes, memory);
+    check_memory(scene, fixed_bytes, options.memory);
     MotionTruth truth;
     const MovingBodies bodies(scene, from, to, precision);
     const auto boxes = bodies.boxes();
     truth.invalid = invalid_of(boxes);
-    for_near_blocks({scene, boxes, self, fixed_bytes, memory}, report,
+    for_near_blocks({scene, boxes, self, fixed_bytes, options.memory}, options.report,
                     [&](std::span<const Pair> pairs) { add_meeting(bodies, pairs, truth); });
     parallel_sort(truth.colliding);
     parallel_sort(truth.undecided);

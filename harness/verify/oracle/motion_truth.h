@@ -23,13 +23,18 @@ struct MotionTruth {
     std::array<std::uint64_t, meeting_tier_count> tiers{}; ///< number of pairs that each tier decided
 };
 
+/// Progress and memory of a truth.
+struct TruthOptions {
+    Report report{};                          ///< called from the calling thread, unless it is empty
+    std::uint64_t memory = ~std::uint64_t{0}; ///< limit of bytes
+};
+
 /// Decides every pair of tetrahedra that frame_truth() would decide in either frame: of bodies that
 /// may_meet() allows, and with `self` those of one body that share no vertex. Tetrahedra that either frame
 /// skips are in no pair. Pairs that are not listed never meet: only pairs whose boxes over the whole motion
 /// are disjoint are not decided. Runs on all cores. Throws InputError when the estimated memory exceeds
 /// `memory` bytes.
 MotionTruth motion_truth(const Scene& scene, const Frame& from, const Frame& to, Precision precision,
-                         SelfPairs self = SelfPairs::off, const Report& report = {},
-                         std::uint64_t memory = ~std::uint64_t{0});
+                         SelfPairs self = SelfPairs::off, const TruthOptions& options = {});
 
 } // namespace tandem
