@@ -80,9 +80,11 @@ void OrderStage::begin_counts(std::uint32_t keys) {
     bodies_.device().clear(counts_.buffer(), std::size_t{keys} * 4);
 }
 
-void OrderStage::start_runs(std::uint32_t keys) {
-    launch(sum_parts_, std::array<Argument, 3>{counts_.buffer(), keys, sums_});
-    launch(start_runs_, std::array<Argument, 3>{counts_.buffer(), keys, sums_});
+void OrderStage::start_runs(std::uint32_t keys, bool by_pair, const Status& status) {
+    const std::array<Argument, 5> arguments{counts_.buffer(), keys, std::uint32_t{by_pair ? 1u : 0u}, sums_,
+                                            status.buffer()};
+    launch(sum_parts_, arguments);
+    launch(start_runs_, arguments);
 }
 
 void OrderStage::sort_pairs(const AnswerBuffers& answer, const Status& status) {
@@ -92,7 +94,7 @@ void OrderStage::sort_pairs(const AnswerBuffers& answer, const Status& status) {
     begin_counts(places_);
     launch(count_pairs_, std::array<Argument, 7>{found.buffer(), found.capacity(), bodies_.owners(),
                                                  bodies_.ids(), firsts_, counts_.buffer(), status.buffer()});
-    start_runs(places_);
+    start_runs(places_, false, status);
     launch(scatter_pairs_,
            std::array<Argument, 9>{found.buffer(), found.capacity(), bodies_.owners(), bodies_.ids(), firsts_,
                                    counts_.buffer(), pairs_.buffer(0), pairs_.buffer(1), status.buffer()});
@@ -108,7 +110,7 @@ void OrderStage::sort_contacts(const AnswerBuffers& answer, const Status& status
     begin_counts(pairs);
     launch(count_contacts_, std::array<Argument, 4>{found.buffer(contact_ids), found.capacity(),
                                                     counts_.buffer(), status.buffer()});
-    start_runs(pairs);
+    start_runs(pairs, true, status);
     launch(scatter_contacts_,
            std::array<Argument, 6>{found.buffer(contact_ids), found.capacity(), counts_.buffer(),
                                    contacts_.buffer(0), contacts_.buffer(1), status.buffer()});

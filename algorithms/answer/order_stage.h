@@ -25,7 +25,8 @@ public:
 private:
     void launch(const Kernel& kernel, std::span<const Argument> arguments);
     void begin_counts(std::uint32_t keys);
-    void start_runs(std::uint32_t keys);
+    /// `by_pair`: keys are pairs, of which the answer may have fewer.
+    void start_runs(std::uint32_t keys, bool by_pair, const Status& status);
 
     const Bodies& bodies_;
     LaunchShape shape_;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Canonical order of an answer: pairs by the numbers of their bodies and tetrahedra, contacts by pair and
 // feature. Rows are counted by a first key, whose sums give each key its run of places. Rows go to places of
-// their run in any order, and each run is sorted by a second key. Runs are short: most have fewer than 32
-// rows.
+// their run in any order. The rank of a row's second key in its run is then its place. Runs are short: most
+// have fewer than 32 rows. Second keys of a run differ.
 #include "backends/portable.h"
 #include "algorithms/answer/pairs.clh"
 
@@ -57,9 +57,16 @@ DEVICE uint strided_sum(GLOBAL const uint* values, uint first, uint end) {
     return sum;
 }
 
+// Number of keys: `count`, or if keys are pairs (`by_pair`) that of the pairs found, at most `count`.
+DEVICE uint keys_in(GLOBAL const uint* status, uint count, uint by_pair) {
+    return by_pair != 0u ? rows_in(status + STATUS_PAIRS, count) : count;
+}
+
 // sums[group] = sum of the group's part.
-KERNEL void sum_parts(GLOBAL const uint* counts, uint count, GLOBAL uint* sums) {
+KERNEL void sum_parts(GLOBAL const uint* counts, uint most, uint by_pair, GLOBAL uint* sums,
+                      GLOBAL const uint* status) {
     LOCAL_ARRAY(uint, own_sums, GROUP_SIZE);
+    const uint count = keys_in(status, most, by_pair);
     own_sums[LOCAL_ID] = strided_sum(counts, group_first(GROUP_ID, count), group_first(GROUP_ID + 1u, count));
     BARRIER;
     if (LOCAL_ID != 0u) return;
@@ -69,9 +76,11 @@ KERNEL void sum_parts(GLOBAL const uint* counts, uint count, GLOBAL uint* sums) 
 }
 
 // Turns the counts into the first place of each key. Each work-item has adjacent counts of the group's part.
-KERNEL void start_runs(GLOBAL uint* counts, uint count, GLOBAL const uint* sums) {
+KERNEL void start_runs(GLOBAL uint* counts, uint most, uint by_pair, GLOBAL const uint* sums,
+                       GLOBAL const uint* status) {
     LOCAL_ARRAY(uint, before, GROUP_SIZE); // shares of the sum of the parts before this one
     LOCAL_ARRAY(uint, starts, GROUP_SIZE);
+    const uint count = keys_in(status, most, by_pair);
     const uint first = group_first(GROUP_ID, count);
     const uint end = group_first(GROUP_ID + 1u, count);
     const uint each = (end - first + (uint)GROUP_SIZE - 1u) / (uint)GROUP_SIZE;
@@ -149,18 +158,12 @@ DEVICE void sift(GLOBAL uint* keys, GLOBAL uint* rows, uint words, uint first, u
     }
 }
 
-// Longer runs are sorted as a heap, whose steps grow less than with the square of their length.
-#define MOST_INSERTED 24u
+// Longer runs are sorted as a heap by one work-item: ranks take time with the square of a run's length.
+#define MOST_RANKED 512u
 
 // Sorts rows first..end - 1 by their keys.
 DEVICE void sort_run(GLOBAL uint* keys, GLOBAL uint* rows, uint words, uint first, uint end) {
     const uint count = end - first;
-    if (count <= MOST_INSERTED) {
-        for (uint i = 1; i < count; ++i)
-            for (uint j = first + i; j > first && keys[j - 1u] > keys[j]; --j)
-                swap_rows(keys, rows, words, j - 1u, j);
-        return;
-    }
     for (uint node = count / 2u; node > 0u; --node) sift(keys, rows, words, first, count, node - 1u);
     for (uint last = count - 1u; last > 0u; --last) {
         swap_rows(keys, rows, words, first, first + last);
@@ -168,34 +171,107 @@ DEVICE void sort_run(GLOBAL uint* keys, GLOBAL uint* rows, uint words, uint firs
     }
 }
 
+// The runs of TEAM_SIZE adjacent keys, whose rows are adjacent too: run i has rows starts[i]..starts[i + 1] -
+// 1.
+#define STARTS (TEAM_SIZE + 1)
+
+// Loads the runs of a team from key `key` - TEAM_LANE on; keys from `count` on have no rows.
+DEVICE void load_starts(GLOBAL const uint* places, uint count, ulong key, LOCAL uint* starts) {
+    if (TEAM_LANE == 0u)
+        starts[0] = key == 0u || count == 0u ? 0u : places[key < count ? key - 1u : count - 1u];
+    starts[TEAM_LANE + 1u] = count == 0u ? 0u : places[key < count ? key : count - 1u];
+}
+
+// The run that contains `row`.
+DEVICE uint run_of(LOCAL const uint* starts, uint row) {
+    uint low = 0;
+    uint high = TEAM_SIZE;
+    while (high - low > 1u) {
+        const uint middle = (low + high) / 2u;
+        if (starts[middle] <= row)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+// The place of a row in its run, which is not too long.
+DEVICE uint ranked_place(GLOBAL const uint* keys, uint first, uint end, uint row) {
+    const uint key = keys[row];
+    uint place = first;
+    for (uint other = first; other < end; ++other) place += keys[other] < key ? 1u : 0u;
+    return place;
+}
+
 // Sorts the run of each of `count` keys, and writes it to `found`.
 KERNEL void sort_pairs(GLOBAL const uint* places, uint count, GLOBAL uint* rows, GLOBAL uint* keys,
                        GLOBAL uint* found) {
-    for (ulong key = GLOBAL_ID; key < count; key += GLOBAL_COUNT) {
-        const uint first = key == 0u ? 0u : places[key - 1u];
-        const uint end = places[key];
-        sort_run(keys, rows, PAIR_WORDS, first, end);
-        for (uint i = first; i < end; ++i) copy_pair(found, i, rows, i);
-    }
+    LOCAL_ARRAY(uint, all_starts, TEAM_COUNT * STARTS);
+    LOCAL uint* starts = all_starts + TEAM_ID * STARTS;
+    ulong key = GLOBAL_ID;
+    ulong first_of_group = GROUP_ID * (ulong)GROUP_SIZE;
+    do { // runs at least once, as loops with barriers must
+        load_starts(places, count, key, starts);
+        TEAM_BARRIER;
+        for (ulong i = (ulong)starts[0] + TEAM_LANE; i < starts[TEAM_SIZE];
+             i += TEAM_SIZE) { // 32 bits might wrap
+            const uint row = (uint)i;
+            const uint run = run_of(starts, row);
+            const uint first = starts[run];
+            const uint end = starts[run + 1u];
+            if (end - first <= MOST_RANKED) copy_pair(found, ranked_place(keys, first, end, row), rows, row);
+        }
+        const uint first = starts[TEAM_LANE];
+        const uint end = starts[TEAM_LANE + 1u];
+        if (end - first > MOST_RANKED) {
+            sort_run(keys, rows, PAIR_WORDS, first, end);
+            for (uint row = first; row < end; ++row) copy_pair(found, row, rows, row);
+        }
+        TEAM_BARRIER;
+        key += GLOBAL_COUNT;
+        first_of_group += GLOBAL_COUNT;
+    } while (first_of_group < count);
 }
 
-// Sorts the run of each of the pairs, and copies the contacts in this order.
-KERNEL void sort_contacts(GLOBAL const uint* places, uint pair_capacity, GLOBAL uint* rows, GLOBAL uint* keys,
-                          GLOBAL const uint* contact_ids, GLOBAL const real* contact_values,
-                          GLOBAL uint* sorted_ids, GLOBAL real* sorted_values, GLOBAL const uint* status) {
+typedef struct {
+    GLOBAL const uint* contact_ids;
+    GLOBAL const real* contact_values;
+    GLOBAL uint* sorted_ids;
+    GLOBAL real* sorted_values;
+} ContactRows;
+
+DEVICE void copy_contact(const ContactRows* contacts, uint to, uint from) {
+    ((GLOBAL WordPair*)contacts->sorted_ids)[to] = ((GLOBAL const WordPair*)contacts->contact_ids)[from];
+    GLOBAL const RealRow* values = (GLOBAL const RealRow*)contacts->contact_values + 2 * (ulong)from;
+    GLOBAL RealRow* sorted = (GLOBAL RealRow*)contacts->sorted_values + 2 * (ulong)to;
+    sorted[0] = values[0];
+    sorted[1] = values[1];
+}
+
+// Sorts the run of each of the pairs, and copies the contacts in this order. A pair has few contacts.
+KERNEL void sort_contacts(GLOBAL const uint* places, uint pair_capacity, GLOBAL const uint* rows,
+                          GLOBAL const uint* keys, GLOBAL const uint* contact_ids,
+                          GLOBAL const real* contact_values, GLOBAL uint* sorted_ids,
+                          GLOBAL real* sorted_values, GLOBAL const uint* status) {
+    LOCAL_ARRAY(uint, all_starts, TEAM_COUNT * STARTS);
+    LOCAL uint* starts = all_starts + TEAM_ID * STARTS;
+    const ContactRows contacts = {contact_ids, contact_values, sorted_ids, sorted_values};
     const uint count = rows_in(status + STATUS_PAIRS, pair_capacity);
-    for (ulong pair = GLOBAL_ID; pair < count; pair += GLOBAL_COUNT) {
-        const uint first = pair == 0u ? 0u : places[pair - 1u];
-        const uint end = places[pair];
-        sort_run(keys, rows, 1u, first, end);
-        for (uint i = first; i < end; ++i) {
-            ((GLOBAL WordPair*)sorted_ids)[i] = ((GLOBAL const WordPair*)contact_ids)[rows[i]];
-            GLOBAL const RealRow* from = (GLOBAL const RealRow*)contact_values + 2 * (ulong)rows[i];
-            GLOBAL RealRow* to = (GLOBAL RealRow*)sorted_values + 2 * (ulong)i;
-            to[0] = from[0];
-            to[1] = from[1];
+    ulong key = GLOBAL_ID;
+    ulong first_of_group = GROUP_ID * (ulong)GROUP_SIZE;
+    do { // runs at least once, as loops with barriers must
+        load_starts(places, count, key, starts);
+        TEAM_BARRIER;
+        for (ulong i = (ulong)starts[0] + TEAM_LANE; i < starts[TEAM_SIZE]; i += TEAM_SIZE) {
+            const uint row = (uint)i;
+            const uint run = run_of(starts, row);
+            copy_contact(&contacts, ranked_place(keys, starts[run], starts[run + 1u], row), rows[row]);
         }
-    }
+        TEAM_BARRIER;
+        key += GLOBAL_COUNT;
+        first_of_group += GLOBAL_COUNT;
+    } while (first_of_group < count);
 }
 
 // Copies the sorted contacts back.
