@@ -8,33 +8,7 @@
     (BOX_WORDS <= 6 ? 40 : BOX_WORDS <= 8 ? 56 : BOX_WORDS <= 12 ? 64 : BOX_WORDS <= 18 ? 72 : 255)
 #include "backends/portable.h"
 #include "algorithms/answer/emit.clh"
-#include "algorithms/tiled/turns.clh"
-
-// A pair in layout PAIR_ITEMS. Tiles of level 0 are blocks of slots, in their order.
-DEVICE WordRow items_of_slots(GLOBAL const uint* tiles, uint a, uint b) {
-    const Tile tile_a = tile_at(tiles, a / LANES);
-    const Tile tile_b = tile_at(tiles, b / LANES);
-    WordRow pair;
-    pair.x = tile_a.body;
-    pair.y = tile_b.body;
-    pair.z = tile_a.item + a % LANES;
-    pair.w = tile_b.item + b % LANES;
-    return pair;
-}
-
-// Writes nothing past `capacity`.
-DEVICE void write_candidates(const Team* team, uint waiting, GLOBAL const uint* tiles, GLOBAL uint* found,
-                             uint capacity) {
-    const ulong start = *team->place;
-    for (uint i = LANE_ID; i < waiting; i += (uint)LANE_STEP)
-        if (start + i < capacity) {
-            const WordPair row = team->pairs[i];
-            if (PAIR_LAYOUT == PAIR_SLOTS)
-                ((GLOBAL WordPair*)found)[start + i] = row;
-            else
-                ((GLOBAL WordRow*)found)[start + i] = items_of_slots(tiles, row.x, row.y);
-        }
-}
+#include "algorithms/tiled/leaves.clh"
 
 // `marks`: set for both tiles if `marked`.
 DEVICE void write_tile_pairs(const Team* team, uint waiting, GLOBAL uint* list, uint capacity,
@@ -60,21 +34,6 @@ DEVICE void load_boxes(GLOBAL const real* uppers, uint upper, GLOBAL const real*
             box[word][part] = !whole ? boxes[word * LANES + lane] : lane == 0u ? root[word] : nothing;
         }
     }
-}
-
-// Leaves out lanes without items in the window of a windowed walk.
-DEVICE void lanes_in_window(GLOBAL const uint* status, const Tile* tile, uint level, uint* keeps) {
-    const uint shift = tile->level == level ? 5u * level : 5u * (tile->level + 1u);
-    FOR_LANES {
-        const ulong first = tile->item + ((ulong)lane << shift);
-        keeps[part] &= (uint)in_window(status, first, first + ((ulong)1 << shift));
-    }
-}
-
-DEVICE void count_tests(Tally* tally, uint rows, int is_seed) {
-    if (!COUNT_WORK || LANE_ID != 0u) return;
-    tally->tests += (ulong)LANES * (rows + 2u);
-    tally->seeds += is_seed ? 1u : 0u;
 }
 
 // Tests tiles of `level` or lower. Overlapping pairs go to `below`, the list of level - 1. `begins`: number
@@ -197,13 +156,6 @@ DEVICE int rest_overlaps(LOCAL const real* a, LOCAL const real* b) {
     return apart == 0u;
 }
 #endif
-
-DEVICE void load_leaves(GLOBAL const real* leaves, uint tile, LANE_BOX(box, LEAF_DIRECTIONS)) {
-    GLOBAL const real* boxes = leaves_of(leaves, tile);
-    UNROLL for (uint word = 0; word < (uint)LEAF_WORDS; ++word) {
-        FOR_LANES box[word][part] = boxes[word * LANES + lane];
-    }
-}
 
 // Whether every pair found is a candidate pair.
 #define IS_DECIDED (REST_DIRECTIONS == 0 && OUTPUT == OUTPUT_PAIRS && !SELF)

@@ -3,9 +3,9 @@
 
 #include "algorithms/cost.h"
 #include "algorithms/pipeline.h"
-#include "algorithms/tiled/tile_pairs.clh"
+#include "algorithms/tiled/tile_groups.h"
+#include "algorithms/tiled/tiled_parameters.h"
 #include "algorithms/tiled/tiled_walker.h"
-#include "backends/lanes.h"
 #include "base/error.h"
 
 #include <algorithm>
@@ -24,50 +24,6 @@ const std::vector<Preset> all_presets{
 
 constexpr std::array all_counters{counters::bvtt_nodes, counters::seeds, tiled_counters::upper_tests,
                                   tiled_counters::leaf_tile_pairs};
-
-/// Bytes of local memory of a work-group of `teams` teams of lanes, in the kernel that needs most (tiled.cl,
-/// refit_tiles.cl).
-std::uint64_t local_bytes(const Settings& settings, std::uint64_t teams, bool is_warp) {
-    constexpr std::uint64_t lanes = TANDEM_LANES, words = 4, points = 4 * lanes * 3;
-    const auto k = static_cast<std::uint64_t>(settings[parameters::k]);
-    const std::uint64_t real = settings[parameters::precision] == Precision::fp64 ? 8 : 4;
-    const auto leaf_words = settings[parameters::slabs] == Slabs::three ? std::min<std::uint64_t>(k, 6) : k;
-    const auto rows = [&](std::uint64_t reals) {
-        return lanes * ((reals + 3) / 4 * 4 * real + words) + 4 * words;
-    };
-    const auto rest = k > leaf_words ? lanes * ((k - leaf_words) | 1) : 0;
-    const auto pairs = (2u * PAIR_CAPACITY(is_warp) + 6) * words;
-    const auto leaves = rows(leaf_words) + pairs + (rest > 0 ? rest + std::max(rest, points) : 0) * real;
-    const auto uppers = rows(k) + pairs;
-    const auto refit = (points + (lanes + 1) * k) * real;
-    return std::max(teams * std::max(leaves, uppers), teams * refit + lanes * (k | 1) * real);
-}
-
-/// Bytes of local memory of the tile kernels in groups of `group_size`. Lanes are a warp or not by compiler
-/// (portable.h); if not, the group is one team.
-std::uint64_t local_bytes_of_group(const Settings& settings, std::uint32_t group_size) {
-    const auto one = local_bytes(settings, 1, false);
-    return group_size % TANDEM_LANES == 0
-               ? std::max(one, local_bytes(settings, group_size / TANDEM_LANES, true))
-               : one;
-}
-
-/// Ends of slabs in the bounds of a tetrahedron.
-double leaf_words_of(const Settings& settings) {
-    const auto k = static_cast<double>(settings[parameters::k]);
-    return settings[parameters::slabs] == Slabs::three ? std::min(k, 6.0) : k;
-}
-
-/// Groups of the tile kernels: as large as the setting and local memory allow. Doubles with many directions
-/// need more than 48 KiB in groups of 128.
-LaunchShape fitting_shape(const Settings& settings, const DeviceInfo& info, LaunchShape shape) {
-    while (shape.group_size % 64 == 0
-           && local_bytes_of_group(settings, shape.group_size) > info.local_bytes) {
-        shape.group_size /= 2;
-        shape.groups *= 2;
-    }
-    return shape;
-}
 
 class Tiled : public Traversal {
 public:
@@ -95,12 +51,7 @@ private:
     }
 
     void do_fit(Settings& settings, const DeviceInfo& info, const Scene* scene) const override {
-        if (settings[tiled_parameters::most_seeds] == 0)
-            settings.set(tiled_parameters::most_seeds(info.is_gpu ? 16384 : 256));
-        // In OpenCL on a processor a group works on one tile, whatever its size: 32 lanes at most have work,
-        // and only a group of one work-item lets the compiler vectorise over them.
-        if (settings[tandem::parameters::group_size] == 0 && !info.is_gpu)
-            settings.set(tandem::parameters::group_size(1));
+        fit_tiles(settings, info);
         if (settings[tandem::parameters::slabs] != Slabs::usual) return;
         const bool needs_scene = info.is_gpu && settings[tandem::parameters::k] > 12;
         if (needs_scene && scene == nullptr) return;
@@ -117,28 +68,21 @@ private:
             && settings[tandem::parameters::slabs] == Slabs::three)
             throw InputError("setting slabs=three makes slabs from the vertices of one frame, and "
                              "motion=linear needs those of two; choose slabs=all");
-        const auto group_size = static_cast<std::uint32_t>(settings[tandem::parameters::group_size]);
-        const auto smallest = fitting_shape(settings, info, {group_size, 1}).group_size;
-        check_local_memory(settings, info, local_bytes_of_group(settings, smallest), "algorithm tiled",
-                           "lower it");
+        check_tile_memory(settings, settings[tandem::parameters::slabs], info, "algorithm tiled");
     }
 
     std::vector<KernelCost> do_costs(const Scene& scene, const Settings& settings) const override {
         const SceneFacts s(scene, settings);
-        const auto words = leaf_words_of(settings);
-        auto costs = tile_tree_costs(s, words, settings[tandem::parameters::slabs] == Slabs::touched);
+        const auto slabs = settings[tandem::parameters::slabs];
+        const auto words = leaf_words_of(settings, slabs);
+        auto costs = tile_tree_costs(s, words, slabs == Slabs::touched);
         const auto upper = [](const FrameFacts& f) { return f.counted(tiled_counters::upper_tests.name); };
-        const auto pairs = [](const FrameFacts& f) {
-            return 4 * TILE_PAIR_WORDS * f.counted(tiled_counters::leaf_tile_pairs.name);
-        };
-        costs.push_back(
-            {"walk_upper_tiles", [=](const FrameFacts& f) { return 8 * f.body_pairs + pairs(f); },
-             [=](const FrameFacts& f) { return s.k * upper(f); },
-             "reads body pairs, writes pairs of tiles of tetrahedra; k operations per tested box"});
+        costs.push_back(upper_tiles_cost(s.k));
         costs.push_back(
             {"walk_leaf_tiles",
              [=](const FrameFacts& f) {
-                 return pairs(f) + words * s.real * f.touched + s.pair_bytes * f.candidate_pairs;
+                 return leaf_tile_pair_bytes(f) + words * s.real * f.touched
+                        + s.pair_bytes * f.candidate_pairs;
              },
              [=](const FrameFacts& f) {
                  return words * (f.counted(counters::bvtt_nodes.name) - upper(f))
@@ -150,9 +94,10 @@ private:
     }
 
     AlgorithmStages do_build(const BuildContext& context) const override {
-        const auto shape = fitting_shape(context.settings, context.device.info(), context.shape);
+        const auto slabs = context.settings[tandem::parameters::slabs];
+        const auto shape = fitting_shape(context.settings, slabs, context.device.info(), context.shape);
         auto trees = std::make_unique<TileTrees>(
-            context.bodies, context.settings[tandem::parameters::slabs], shape.group_size,
+            context.bodies, slabs, shape.group_size,
             static_cast<std::uint64_t>(context.settings[tiled_parameters::most_seeds]));
         auto walker = std::make_unique<TiledWalker>(*trees, context, shape);
         return {std::move(trees), std::move(walker)};

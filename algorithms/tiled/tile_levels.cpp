@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/tiled/tile_levels.h"
+
+#include "algorithms/sources.h"
+#include "algorithms/tiled/tile_pairs.clh"
+#include "algorithms/tiled/tiled_parameters.h"
+#include "base/error.h"
+
+namespace tandem {
+
+namespace {
+
+constexpr std::size_t row_bytes = 4 * TILE_PAIR_WORDS;
+
+} // namespace
+
+TileLevels::TileLevels(TileTrees& trees, const BuildContext& context, LaunchShape shape)
+    : trees_(trees), shape_(shape) {
+    const auto rows =
+        // The level above finds the pairs of a list, so the highest level has none.
+        first_rows(context.device, context.settings[tiled_parameters::tile_pair_capacity], row_bytes,
+                   1.0 / 16);
+    const auto lists = std::max<std::size_t>(1, trees.walked_levels() - 1);
+    for (std::size_t level = 0; level < lists; ++level)
+        lists_.emplace_back(context.device, "pairs of tiles", row_bytes,
+                            trees.walked_levels() > 1 ? rows : 1);
+    expected_.resize(trees.walked_levels());
+}
+
+Defines TileLevels::defines(const WalkBuild& build) const {
+    auto defines = trees_.defines(shape_.group_size);
+    build.add_to(defines);
+    defines["SEVERAL_TOPS"] = trees_.begins(trees_.walked_levels() - 1) > 1 ? "1" : "0";
+    return defines;
+}
+
+void TileLevels::compile(const Defines& defines) {
+    kernel_ = trees_.bodies().device().compile(kernel_source("algorithms/tiled/tiled.cl"), "walk_upper_tiles",
+                                               defines);
+}
+
+Grid TileLevels::grid(std::uint32_t level) {
+    auto& [pairs, groups] = expected_[level];
+    const auto teams = std::max(1u, shape_.group_size / TileShapes::lanes);
+    if (!pairs) return {shape_.groups, shape_.group_size};
+    const auto wanted = (*pairs + teams - 1) / teams;
+    // Groups that only test roots finish early, because most roots are apart.
+    std::uint64_t most =
+        trees_.begins(level) > 1 ? std::max<std::uint64_t>(shape_.groups, wanted) : shape_.groups;
+    // With many pairs a team, more groups than run at once: pairs take unlike times, and a group that ends
+    // makes room for another.
+    const std::uint64_t many = 8;
+    if (trees_.bodies().device().info().is_gpu && wanted >= many * most) most *= 2;
+    return {groups.groups_for(wanted, static_cast<std::uint32_t>(most)), shape_.group_size};
+}
+
+void TileLevels::expect(const Status& status, std::uint64_t body_pairs) {
+    for (std::uint32_t level = 0; level < trees_.walked_levels(); ++level) {
+        const bool is_found = level + 1 < trees_.walked_levels();
+        const std::uint64_t begins = trees_.begins(level);
+        expected_[level].pairs =
+            begins * begins * body_pairs + (is_found ? status.counter(STATUS_TILE_PAIRS + 2 * level) : 0);
+    }
+}
+
+bool TileLevels::grow(const Status& status) {
+    bool again = false;
+    for (std::uint32_t level = 0; level + 1 < trees_.walked_levels(); ++level) {
+        const auto found = status.counter(STATUS_TILE_PAIRS + 2 * level);
+        if (found <= lists_[level].capacity()) continue;
+        lists_[level].grow(found);
+        again = true;
+    }
+    return again;
+}
+
+void TileLevels::report(const Status& status, std::uint64_t body_pairs,
+                        std::map<std::string_view, std::uint64_t>& work) const {
+    work[counters::bvtt_nodes.name] += status.counter(STATUS_BVTT_NODES);
+    work[counters::seeds.name] += status.counter(STATUS_SEEDS);
+    work[tiled_counters::upper_tests.name] += status.counter(STATUS_UPPER_TESTS);
+    const std::uint64_t begins = trees_.begins(0);
+    work[tiled_counters::leaf_tile_pairs.name] +=
+        begins * begins * body_pairs + (trees_.walked_levels() > 1 ? status.counter(STATUS_TILE_PAIRS) : 0);
+}
+
+void TileLevels::launch_level(const Input& input, std::uint32_t level) {
+    const std::array<Argument, 16> arguments{input.uppers,
+                                             trees_.first_upper(),
+                                             input.roots,
+                                             trees_.tile_table(),
+                                             trees_.tops(),
+                                             input.body_pairs,
+                                             input.pair_capacity,
+                                             trees_.begins(level),
+                                             level,
+                                             list(level).buffer(),
+                                             capacity(level),
+                                             list(level - 1).buffer(),
+                                             list(level - 1).capacity(),
+                                             trees_.marks(),
+                                             std::uint32_t{level == 1 && trees_.has_touched() ? 1u : 0u},
+                                             input.status};
+    trees_.bodies().device().launch(kernel_, grid(level), arguments);
+}
+
+void TileLevels::launch(const Input& input) {
+    for (auto level = trees_.walked_levels(); --level > 0;) launch_level(input, level);
+}
+
+void TileLevels::check_start_pairs(std::size_t body_pairs) const {
+    const std::uint64_t begins = trees_.begins(trees_.walked_levels() - 1);
+    if (begins > 1 && begins * begins * body_pairs > 0xffffffffu) // turns.clh counts them in a word
+        throw InputError(
+            "body pairs given more than once make more than 2^32 initial pairs of tiles; lower most_seeds");
+}
+
+} // namespace tandem
