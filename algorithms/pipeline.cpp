@@ -138,6 +138,7 @@ WalkTask Pipeline::task(const AnswerBuffers& answer, LaunchHook* launch_hook) {
     return {body_pairs->rows().buffer(),
             body_pairs->rows().capacity(),
             body_pairs->searched(),
+            body_pairs->complete(),
             body_pairs->on_host(),
             answer,
             status,
@@ -154,6 +155,7 @@ FrameResult Pipeline::counts() const {
     result.rejected = status.counter(STATUS_REJECTED);
     result.undecided_by_filter = status.counter(STATUS_UNDECIDED_BY_FILTER);
     result.undecided_by_double = status.counter(STATUS_UNDECIDED_BY_DOUBLE);
+    result.rebuilds = status.counter(STATUS_REBUILDS);
     result.batches = 1;
     if (output == Output::digest)
         result.summed =

@@ -28,7 +28,10 @@ void ResidentSession::upload_vertices(const Frame& frame) {
     is_uploaded_ = true;
 }
 
-void ResidentSession::do_reset() { batches_ = 1; }
+void ResidentSession::do_reset() {
+    batches_ = 1;
+    pipeline_.stages.walker->reset();
+}
 
 FrameResult ResidentSession::do_run_device_input(const DeviceFrameInput& input,
                                                  std::optional<std::span<const BodyPair>> body_pairs) {
@@ -157,6 +160,7 @@ FrameResult ResidentSession::run_parts(const Input& input) {
     if (has_received_)
         throw OutOfMemory(fmt::format("{}: a frame in batches needs all vertices in the host's memory",
                                       pipeline_.device.info().id));
+    pipeline_.stages.walker->save_memory();
     if (input.device != nullptr) pipeline_.status.begin(0);
     refresh(input);
     if (input.device != nullptr) {

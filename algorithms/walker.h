@@ -34,6 +34,7 @@ struct WalkTask {
     const Buffer& body_pairs;          ///< rows of two words; the status has their number
     std::uint32_t pair_capacity = 0;   ///< capacity of `body_pairs`, in rows
     bool searched = false;             ///< the device finds the pairs; the host does not have their number
+    bool complete = false;             ///< no pair is missing of those whose volumes overlap
     std::span<const BodyPair> on_host; ///< the pairs; empty if the device finds them
     const AnswerBuffers& answer;
     Status& status;
@@ -60,6 +61,10 @@ public:
     /// Grows the walker's own buffers if the last walk overflowed them. Returns true if the walk must run
     /// again. Throws OutOfMemory.
     bool grow(const Status& status) { return do_grow(status); }
+    /// Clears state that is carried from walk to walk; a walker without state has none.
+    void reset() { do_reset(); }
+    /// Frees memory that it can do without, because a frame did not fit. Throws OutOfMemory.
+    void save_memory() { do_save_memory(); }
     /// Adds the counts of a counting walk, by the names of Traversal::counters().
     void report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const {
         do_report(status, work);
@@ -69,6 +74,8 @@ private:
     virtual void do_compile(const WalkBuild& build) = 0;
     virtual void do_launch(const WalkTask& task) = 0;
     virtual bool do_grow(const Status& status) = 0;
+    virtual void do_reset() {}
+    virtual void do_save_memory() {}
     virtual void do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const = 0;
 };
 

@@ -44,6 +44,7 @@ FrameCounts& FrameCounts::operator+=(const FrameCounts& other) {
     undecided_by_filter += other.undecided_by_filter;
     undecided_by_double += other.undecided_by_double;
     retries += other.retries;
+    rebuilds += other.rebuilds;
     batches += other.batches;
     return *this;
 }

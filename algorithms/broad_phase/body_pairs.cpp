@@ -30,14 +30,14 @@ BodyPairs::BodyPairs(const BuildContext& context, const Hierarchy& hierarchy, St
 
 void BodyPairs::make_stage() {
     if (stage_) return;
-    stage_ = std::make_unique<BroadStage>(bodies_, hierarchy_, shape_, self_);
+    stage_ = std::make_unique<BroadStage>(bodies_, hierarchy_.volumes(), shape_, self_);
     const auto rows = std::clamp<std::uint64_t>(stage_->most_pairs(), 1, first_capacity_);
     if (rows > rows_.capacity()) rows_ = GrowableBuffer(device_, "body pairs", sizeof(BodyPair), rows);
 }
 
 void BodyPairs::upload(std::span<const BodyPair> pairs) {
     on_host_ = pairs;
-    searches_ = false;
+    searches_ = complete_ = false;
     if (pairs.size() > rows_.capacity()) rows_.grow(pairs.size());
     const StageScope scope(device_, Stage::write);
     device_.upload(rows_.buffer(), std::as_bytes(pairs), 0, writes_ == Status::Writes::blocking);
@@ -56,7 +56,7 @@ void BodyPairs::begin_on_device(std::optional<std::span<const BodyPair>> given) 
     }
     make_stage();
     on_host_ = {};
-    searches_ = true;
+    searches_ = complete_ = true;
     if (!sorted_) stage_->sort_by_volumes();
     sorted_ = true;
 }
@@ -66,7 +66,7 @@ void BodyPairs::begin(const FrameInput& input, std::optional<std::span<const Bod
         upload_given(*given);
     } else if (!broad_) {
         on_host_ = {};
-        searches_ = true;
+        searches_ = complete_ = true;
         // Once a session, because bodies move little between frames. An old order costs time but no pairs.
         if (!sorted_) stage_->sort(input.frame);
         sorted_ = true;
@@ -77,6 +77,7 @@ void BodyPairs::begin(const FrameInput& input, std::optional<std::span<const Bod
             std::erase_if(found_, [this](BodyPair pair) { return !contains(pair); });
         }
         upload(found_);
+        complete_ = true;
     }
 }
 

@@ -43,6 +43,8 @@ public:
     /// From the next frame on, finds the pairs of this subdomain. `given` pairs are not filtered.
     void set_subdomain(const Subdomain& subdomain);
 
+    /// Whether the pairs are all whose volumes overlap: found, and not given or a part of the frame's.
+    bool complete() const { return complete_; }
     /// Whether the device finds the current pairs.
     bool searched() const { return searches_; }
     /// The current pairs; empty if the device finds them.
@@ -68,6 +70,7 @@ private:
     std::optional<BroadSweep> broad_;   ///< search of the host; none with broad=device
     std::unique_ptr<BroadStage> stage_; ///< search of the device; created at its first use
     bool searches_ = false;             ///< the device searches in this frame
+    bool complete_ = false;             ///< the current pairs are complete()
     bool sorted_ = false;               ///< bodies are sorted by an earlier frame or by subdomain
     std::vector<Role> roles_;           ///< by body; empty without a subdomain
     std::vector<BodyPair> found_;       ///< by the host

@@ -87,9 +87,13 @@ DEVICE uint overlapping_columns(GLOBAL const RealPair* roots, int is_only_tile, 
     return position < first ? hits : hits & 0xfffffffeu << (position - first);
 }
 
-// Bit c is set if column c is the body at `position` itself, and it is one that SELF pairs with itself.
-DEVICE uint own_column(GLOBAL const uint* bodies, uint body, uint position, uint first) {
+// Bit c is set if column c is the body at `position` itself, and it is one that SELF pairs with itself. A
+// body of which nothing takes part has an empty volume and no pair.
+DEVICE uint own_column(GLOBAL const real* volumes, GLOBAL const uint* bodies, uint body, uint position,
+                       uint first) {
     if (SELF == SELF_OFF || position < first || position - first >= BROAD_TILE) return 0u;
+    GLOBAL const real* volume = volume_of(volumes, body);
+    if (starts_beyond(volume[0], volume[DIRECTIONS])) return 0u;
     const int deformable = (bodies[(ulong)body * BODY_WORDS + BODY_FLAGS] & BODY_IN_WORLD) != 0u;
     return SELF == SELF_ON || deformable ? 1u << (position - first) : 0u;
 }
@@ -201,7 +205,7 @@ KERNEL void find_body_pairs(GLOBAL const real* volumes, GLOBAL const RealPair* r
                 uint hits = 0;
                 if (row < rows_end) {
                     hits = overlapping_columns(roots, is_only_tile, row, columns, from, column_count)
-                           | own_column(bodies, order[row], row, from);
+                           | own_column(volumes, bodies, order[row], row, from);
                     if (FILTERED) hits = filtered(filters, order[row], order + from, hits);
                 }
                 const uint offset = hits != 0u ? LOCAL_ATOMIC_ADD(shared + FOUND, count_bits(hits)) : 0u;

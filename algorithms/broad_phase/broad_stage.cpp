@@ -34,8 +34,8 @@ std::uint32_t tiles_of(std::uint32_t bodies) { return (bodies + BROAD_TILE - 1) 
 
 } // namespace
 
-BroadStage::BroadStage(const Bodies& bodies, const Hierarchy& hierarchy, LaunchShape shape, SelfPairs self)
-    : bodies_(bodies), hierarchy_(hierarchy), has_self_(self != SelfPairs::off) {
+BroadStage::BroadStage(const Bodies& bodies, const Buffer& volumes, LaunchShape shape, SelfPairs self)
+    : bodies_(bodies), volumes_(volumes), has_self_(self != SelfPairs::off) {
     shape_.group_size = std::min<std::uint32_t>(shape.group_size, BROAD_TILE);
     shape_.groups = shape.groups * (shape.group_size / shape_.group_size);
     const auto count = bodies.count();
@@ -88,7 +88,7 @@ std::vector<Eigen::Vector3d> BroadStage::centres_of_volumes() const {
     std::vector<Real> slabs(bodies_.count() * k);
     {
         const StageScope scope(bodies_.device(), Stage::read);
-        bodies_.device().download(hierarchy_.volumes(), std::as_writable_bytes(std::span(slabs)));
+        bodies_.device().download(volumes_, std::as_writable_bytes(std::span(slabs)));
     }
     std::vector<Eigen::Vector3d> centres(bodies_.count());
     for (std::size_t body = 0; body < centres.size(); ++body)
@@ -136,12 +136,12 @@ void BroadStage::upload(const std::vector<std::uint32_t>& order) {
 void BroadStage::launch(const Buffer& pairs, std::uint32_t capacity, const Buffer& status) {
     const StageScope scope(bodies_.device(), Stage::broad);
     if (tiles_of(count_) > 1) {
-        const std::array<Argument, 5> bound{hierarchy_.volumes(), order_, count_, roots_, unions_};
+        const std::array<Argument, 5> bound{volumes_, order_, count_, roots_, unions_};
         bodies_.device().launch(bound_, {tiles_of(count_), shape_.group_size}, bound);
     }
-    const std::array<Argument, 11> find{
-        hierarchy_.volumes(), roots_, unions_,  order_, bodies_.row_table(), filters_, count_,
-        moving_count_,        pairs,  capacity, status};
+    const std::array<Argument, 11> find{volumes_, roots_, unions_,       order_, bodies_.row_table(),
+                                        filters_, count_, moving_count_, pairs,  capacity,
+                                        status};
     const auto tile_pairs = tiles_of(moving_count_) * tiles_of(count_);
     bodies_.device().launch(find_, {std::max(1u, std::min(shape_.groups, tile_pairs)), shape_.group_size},
                             find);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "algorithms/bodies/bodies.h"
-#include "algorithms/hierarchy/hierarchy.h"
+#include "algorithms/distributed/subdomain.h"
 #include "algorithms/traversal.h"
 
 namespace tandem {
@@ -11,9 +11,9 @@ namespace tandem {
 /// last refit, and the pairs (a, a) of setting self. Grids depend on the number of bodies only.
 class BroadStage {
 public:
-    /// Both arguments must outlive this. Throws InputError if there are too many bodies to number the pairs
-    /// of their tiles.
-    BroadStage(const Bodies& bodies, const Hierarchy& hierarchy, LaunchShape shape,
+    /// `volumes`: a k-DOP per body (volume.clh). `bodies` must outlive this. Throws InputError if there are
+    /// too many bodies to number the pairs of their tiles.
+    BroadStage(const Bodies& bodies, const Buffer& volumes, LaunchShape shape,
                SelfPairs self = SelfPairs::off);
 
     /// Sorts the bodies by their positions in `frame`. The order affects the speed of later searches, which
@@ -21,7 +21,7 @@ public:
     void sort(const Frame& frame);
     /// From the next launch on, finds the pairs of a subdomain, and has its order of bodies.
     void set_subdomain(const Subdomain& subdomain);
-    /// Sorts the bodies by the volumes of the last refit, for frames in the device's memory. Waits for it.
+    /// Sorts the bodies by their volumes, for frames in the device's memory. Waits for it.
     void sort_by_volumes();
     /// Enqueues the search. It writes pairs of 2 words to `pairs`, in any order and up to `capacity`, and
     /// adds their number to `status`, which the caller has cleared.
@@ -37,7 +37,7 @@ private:
     void sort(const std::vector<Eigen::Vector3d>& centres);
 
     const Bodies& bodies_;
-    const Hierarchy& hierarchy_;
+    Buffer volumes_;
     bool has_self_; ///< finds pairs of a body with itself
     LaunchShape shape_;
     std::uint32_t count_ = 0;        ///< bodies in the order

@@ -144,7 +144,7 @@ void ChunkTrees::upload_jobs() {
     body_order_ = uploaded(device_, bytes_of(order), "bodies to refit");
 }
 
-void ChunkTrees::do_take() {
+void ChunkTrees::do_take(const Subdomain&) {
     jobs_.clear();
     strips_.clear();
     plan_strips();

@@ -46,7 +46,7 @@ private:
     };
 
     void do_refit(const Frame& frame, bool all) override;
-    void do_take() override;
+    void do_take(const Subdomain&) override;
     const Buffer& do_volumes() const override { return volumes_; }
     const Buffer& do_nodes() const override { return nodes_; }
     std::size_t do_bytes() const override;

@@ -24,7 +24,7 @@ public:
     /// bounds of all other bodies become invalid. Throws DeviceError.
     void take(const Subdomain& subdomain, std::size_t bodies) {
         roles_ = roles_of(subdomain, bodies);
-        do_take();
+        do_take(subdomain);
     }
 
     /// The k-DOP of every body after the last refit, K reals each (volume.clh).
@@ -43,7 +43,7 @@ private:
     virtual const Buffer& do_nodes() const = 0;
     virtual std::size_t do_bytes() const = 0;
     /// The default keeps refitting all bodies.
-    virtual void do_take() {}
+    virtual void do_take(const Subdomain&) {}
 
     std::vector<Role> roles_; ///< by body; empty if all bodies are active
 };

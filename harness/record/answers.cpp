@@ -80,6 +80,13 @@ Fields<CellRecord> effort_fields() {
         {"retries", count(),
          "walks that ran again because a buffer was too small, over the frames of the checking replay",
          [](auto& r) { return r.m.retries; }},
+        {"rebuilds",
+         count(),
+         "walks of the last sample because no list of an earlier frame was valid (algorithm listed), over "
+         "all "
+         "frames and devices; 0 for other algorithms; records from before it have none",
+         [](auto& r) { return r.m.samples.empty() ? 0 : r.m.samples.back().rebuilds; },
+         {.optional = true}},
         {"batches", nullable(integer_from(0)),
          "parts that frames ran in, over the frames of the checking replay: as many as frames unless memory "
          "was short; null in records from before frames could be split",

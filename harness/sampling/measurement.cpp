@@ -40,7 +40,8 @@ std::int64_t TimedReplay::total_ns() const {
     return std::accumulate(frame_ns.begin(), frame_ns.end(), std::int64_t{0});
 }
 
-void TimedReplay::add_shared(const FrameResult& result) {
+void TimedReplay::add(const FrameResult& result) {
+    rebuilds += result.rebuilds;
     if (result.shared.empty()) return;
     shared_ns.resize(result.shared.size());
     std::int64_t longest = 0;

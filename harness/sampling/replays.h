@@ -34,7 +34,7 @@ public:
             const auto begin = std::chrono::steady_clock::now();
             const auto result = session_->run(frame.input());
             replay.frame_ns.push_back(since(begin));
-            replay.add_shared(result);
+            replay.add(result);
             visit(i, result);
         }
         return replay;

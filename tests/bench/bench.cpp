@@ -97,7 +97,7 @@ void frame(benchmark::State& state, Device& device, const std::string& name, con
 void broad_on_device(benchmark::State& state, Device& device) {
     const auto scene = make_scene(fmt::format("pile:bodies={},mesh=grain1,frames=1", state.range(0)));
     support::PreparedTrees on(device, scene, {}, 32, group_size(device));
-    BroadStage stage(on.bodies, on.trees, {group_size(device), 64 * device.info().compute_units});
+    BroadStage stage(on.bodies, on.trees.volumes(), {group_size(device), 64 * device.info().compute_units});
     const StageScope scope(device, Stage::broad);
     const auto status = device.allocate(STATUS_WORDS * 4, "status");
     const auto capacity = static_cast<std::uint32_t>(std::min<std::uint64_t>(stage.most_pairs(), 1 << 22));

@@ -81,7 +81,7 @@ public:
            std::uint32_t groups)
         : scene_(scene),
           on_(device, scene, geometry, 4, device.info().max_group_size == 1 ? 1 : group_size),
-          stage_(on_.bodies, on_.trees, {on_.trees.group_size(), groups}),
+          stage_(on_.bodies, on_.trees.volumes(), {on_.trees.group_size(), groups}),
           status_(device.allocate(STATUS_WORDS * 4, "status")) {}
 
     void go_to(std::size_t frame) { on_.update(scene_.frame(frame)); }
