@@ -15,6 +15,7 @@
     ALGORITHM(chunked) \
     ALGORITHM(gproximity) \
     ALGORITHM(tiled) \
+    ALGORITHM(listed) \
     ALGORITHM(leaf_query)
 #define TANDEM_BASELINES(ALGORITHM) \
     ALGORITHM(embree) \
@@ -31,7 +32,7 @@ TANDEM_BASELINES(TANDEM_DECLARE)
 
 namespace {
 
-std::vector<const Traversal*>& listed() {
+std::vector<const Traversal*>& known_algorithms() {
     static std::vector<const Traversal*> all{TANDEM_ALGORITHMS(TANDEM_ADDRESS)};
     return all;
 }
@@ -43,7 +44,7 @@ std::vector<std::span<const KernelSource>>& known_sources() {
 
 } // namespace
 
-std::span<const Traversal* const> algorithms() { return listed(); }
+std::span<const Traversal* const> algorithms() { return known_algorithms(); }
 
 std::span<const Traversal* const> baselines() {
     static const std::vector<const Traversal*> all{TANDEM_BASELINES(TANDEM_ADDRESS)};
@@ -56,7 +57,7 @@ void add_algorithm(const Traversal& traversal) {
             if (other->name() == traversal.name())
                 throw InputError(
                     fmt::format("an algorithm {} exists already; choose another name", traversal.name()));
-    listed().push_back(&traversal);
+    known_algorithms().push_back(&traversal);
 }
 
 const Traversal& algorithm(std::string_view name) {
