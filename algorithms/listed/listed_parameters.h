@@ -7,7 +7,6 @@
 namespace tandem {
 
 namespace listed_parameters {
-/// The default is measured: README.md of this folder.
 inline constexpr Setting<std::int64_t> pad{"pad", 60, ValueRange{1, 1000000}, "",
                                            "largest pad of a list, in thousandths of the mean length of a "
                                            "tetrahedron's bounding box; a list has the "
