@@ -67,13 +67,14 @@ bool ListedWalker::has_other_pairs(const WalkTask& task) {
 }
 
 /// What the host asks of the device. A list cannot be kept when its body pairs or the tetrahedra that take
-/// part have changed.
+/// part have changed. Its pad bounds the motion of one frame's positions, not of two.
 std::uint32_t ListedWalker::request_of(const WalkTask& task) {
     const bool is_new = refits_ != trees_.refits();
     const bool other = has_other_pairs(task) || changes_ != trees_.changes();
     refits_ = trees_.refits();
     changes_ = trees_.changes();
-    if (other || is_windowed_ || !has_memory_) return REQUEST_DIRECT;
+    const bool bounds_motion = bodies_.geometry().motion == Motion::linear;
+    if (other || is_windowed_ || !has_memory_ || bounds_motion) return REQUEST_DIRECT;
     if (is_new) return is_known_ ? REQUEST_DECIDE : REQUEST_DIRECT;
     return is_known_ ? REQUEST_EMIT : REQUEST_REPEAT;
 }
