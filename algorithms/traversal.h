@@ -7,6 +7,7 @@
 #include "backends/device.h"
 #include "scenes/scene.h"
 
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <span>
@@ -45,6 +46,10 @@ public:
     /// unless setting self allows such pairs.
     FrameResult run(const Frame& frame, std::span<const BodyPair> body_pairs) {
         return run_among(frame, body_pairs);
+    }
+    /// The same for a list in braces.
+    FrameResult run(const Frame& frame, std::initializer_list<BodyPair> body_pairs) {
+        return run_among(frame, std::span(body_pairs.begin(), body_pairs.size()));
     }
     /// With motion=linear: the candidate pairs are those that could meet while the bodies move from `frame`
     /// to `next`. Deformable vertices move on straight lines. Rigid bodies translate on straight lines and

@@ -3,6 +3,7 @@
 
 #include "algorithms/parameters/table.h"
 #include "algorithms/sources.h"
+#include "backends/upload.h"
 #include "base/error.h"
 
 #include <fmt/format.h>
@@ -13,7 +14,7 @@ namespace tandem {
 namespace {
 
 /// Groups that sum counts: each adds up the sums of those before it.
-constexpr std::uint32_t most_groups = 1024;
+constexpr std::uint32_t most_groups = 4096;
 
 /// Number of tetrahedra in the bodies before each body, and in all.
 std::vector<std::uint32_t> first_places(const Scene& scene) {
@@ -30,6 +31,28 @@ std::vector<std::uint32_t> first_places(const Scene& scene) {
                         places));
     firsts.push_back(static_cast<std::uint32_t>(places));
     return firsts;
+}
+
+/// Rows of keys, which kernels read in quads.
+std::uint64_t whole_quads(std::uint32_t rows) { return (std::uint64_t{rows} + 3) / 4 * 4; }
+
+/// The table `solids` of sort.cl. Places of tetrahedra that are not walked are 0 and not read.
+std::vector<std::uint32_t> solids_by_place(const Bodies& bodies, const std::vector<std::uint32_t>& firsts) {
+    const std::size_t words = bodies.pair_layout() == PairLayout::slots ? 1 : 2;
+    std::vector<std::uint32_t> solids(words * firsts.back());
+    for (std::uint32_t body = 0; body < bodies.count(); ++body) {
+        const auto& ids = bodies.mesh(body).ids;
+        for (std::uint32_t item = 0; item < ids.size(); ++item) {
+            auto* const solid = &solids[words * (firsts[body] + ids[item])];
+            if (words == 1) {
+                solid[0] = bodies.first_slot(body) + item;
+            } else {
+                solid[0] = body;
+                solid[1] = item;
+            }
+        }
+    }
+    return solids;
 }
 
 } // namespace
@@ -52,12 +75,11 @@ OrderStage::OrderStage(const Bodies& bodies, LaunchShape shape, bool contacts)
     compile(scatter_pairs_, "scatter_pairs");
     compile(sort_pairs_, "sort_pairs");
     const StageScope scope(device, Stage::write);
-    firsts_ = device.allocate(firsts.size() * 4, "first tetrahedra of bodies");
-    device.upload(firsts_, bytes_of(firsts));
+    firsts_ = uploaded(device, bytes_of(firsts), "first tetrahedra of bodies");
+    solids_ = uploaded(device, bytes_of(solids_by_place(bodies, firsts)), "tetrahedra in canonical order");
     sums_ = device.allocate(shape_.groups * 4, "sums of counts");
-    const std::size_t pair_bytes = words_of(bodies.pair_layout()) * 4;
     counts_ = GrowableBuffer(device, "counts by key", 4, 0);
-    pairs_ = GrowableBuffer(device, {{"pairs to sort", pair_bytes}, {"keys of pairs", 4}}, 0);
+    pairs_ = GrowableBuffer(device, {{"keys of pairs", 4}, {"places of pairs in runs", 4}}, 0);
     if (!contacts) return;
     compile(count_contacts_, "count_contacts");
     compile(scatter_contacts_, "scatter_contacts");
@@ -66,6 +88,7 @@ OrderStage::OrderStage(const Bodies& bodies, LaunchShape shape, bool contacts)
     contacts_ = GrowableBuffer(device,
                                {{"contacts to sort", 4},
                                 {"keys of contacts", 4},
+                                {"places of contacts in runs", 4},
                                 {"ids of sorted contacts", 8},
                                 {"values of sorted contacts", 8 * real_bytes(bodies.geometry())}},
                                0);
@@ -90,37 +113,38 @@ void OrderStage::start_runs(std::uint32_t keys, bool by_pair, const Status& stat
 void OrderStage::sort_pairs(const AnswerBuffers& answer, const Status& status) {
     const StageScope scope(bodies_.device(), Stage::sort);
     const auto& found = answer.pairs;
-    pairs_.reserve(found.capacity());
+    pairs_.reserve(whole_quads(found.capacity()));
+    const auto &keys = pairs_.buffer(0), &before = pairs_.buffer(1);
     begin_counts(places_);
-    launch(count_pairs_, std::array<Argument, 7>{found.buffer(), found.capacity(), bodies_.owners(),
-                                                 bodies_.ids(), firsts_, counts_.buffer(), status.buffer()});
+    launch(count_pairs_,
+           std::array<Argument, 8>{found.buffer(), found.capacity(), bodies_.owners(), bodies_.ids(), firsts_,
+                                   counts_.buffer(), before, status.buffer()});
     start_runs(places_, false, status);
     launch(scatter_pairs_,
            std::array<Argument, 9>{found.buffer(), found.capacity(), bodies_.owners(), bodies_.ids(), firsts_,
-                                   counts_.buffer(), pairs_.buffer(0), pairs_.buffer(1), status.buffer()});
-    launch(sort_pairs_, std::array<Argument, 5>{counts_.buffer(), places_, pairs_.buffer(0), pairs_.buffer(1),
-                                                found.buffer()});
+                                   counts_.buffer(), before, keys, status.buffer()});
+    launch(sort_pairs_, std::array<Argument, 7>{counts_.buffer(), places_, found.capacity(), keys, solids_,
+                                                found.buffer(), status.buffer()});
 }
 
 void OrderStage::sort_contacts(const AnswerBuffers& answer, const Status& status) {
     const StageScope scope(bodies_.device(), Stage::sort);
     const auto& found = answer.contacts;
     const auto pairs = answer.pairs.capacity();
-    contacts_.reserve(found.capacity());
+    const auto &ids = found.buffer(contact_ids), &values = found.buffer(contact_values);
+    contacts_.reserve(whole_quads(found.capacity()));
+    const auto &rows = contacts_.buffer(0), &keys = contacts_.buffer(1), &before = contacts_.buffer(2);
+    const auto &sorted_ids = contacts_.buffer(3), &sorted_values = contacts_.buffer(4);
     begin_counts(pairs);
-    launch(count_contacts_, std::array<Argument, 4>{found.buffer(contact_ids), found.capacity(),
-                                                    counts_.buffer(), status.buffer()});
+    launch(count_contacts_,
+           std::array<Argument, 5>{ids, found.capacity(), counts_.buffer(), before, status.buffer()});
     start_runs(pairs, true, status);
-    launch(scatter_contacts_,
-           std::array<Argument, 6>{found.buffer(contact_ids), found.capacity(), counts_.buffer(),
-                                   contacts_.buffer(0), contacts_.buffer(1), status.buffer()});
-    launch(sort_contacts_,
-           std::array<Argument, 9>{counts_.buffer(), pairs, contacts_.buffer(0), contacts_.buffer(1),
-                                   found.buffer(contact_ids), found.buffer(contact_values),
-                                   contacts_.buffer(2), contacts_.buffer(3), status.buffer()});
-    launch(return_contacts_,
-           std::array<Argument, 6>{contacts_.buffer(2), contacts_.buffer(3), found.capacity(),
-                                   found.buffer(contact_ids), found.buffer(contact_values), status.buffer()});
+    launch(scatter_contacts_, std::array<Argument, 7>{ids, found.capacity(), counts_.buffer(), before, rows,
+                                                      keys, status.buffer()});
+    launch(sort_contacts_, std::array<Argument, 10>{counts_.buffer(), pairs, found.capacity(), rows, keys,
+                                                    ids, values, sorted_ids, sorted_values, status.buffer()});
+    launch(return_contacts_, std::array<Argument, 6>{sorted_ids, sorted_values, found.capacity(), ids, values,
+                                                     status.buffer()});
 }
 
 } // namespace tandem

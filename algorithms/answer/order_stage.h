@@ -9,8 +9,8 @@ namespace tandem {
 
 /// Brings an answer on a device into canonical order: pairs ascend by body a, tetrahedron a, body b and
 /// tetrahedron b, contacts by pair and feature, with the numbers of the scene. Grids do not depend on counts.
-/// Buffers: 4 bytes per tetrahedron of the bodies, or per pair if there are more; a copy of pairs and
-/// contacts, with 4 bytes more for a pair and 8 for a contact.
+/// Buffers: 8 to 12 bytes per tetrahedron of the bodies, and 8 per pair. With contacts 4 bytes more per pair,
+/// and a copy of the contacts with 12 bytes more each.
 class OrderStage {
 public:
     /// `bodies` must outlive this. Throws DeviceError for more than 2^32 - 1 tetrahedra.
@@ -31,7 +31,7 @@ private:
     const Bodies& bodies_;
     LaunchShape shape_;
     std::uint32_t places_ = 0; ///< tetrahedra of all bodies, in input order
-    Buffer firsts_, sums_;
+    Buffer firsts_, solids_, sums_;
     GrowableBuffer counts_, pairs_, contacts_;
     Kernel count_pairs_, scatter_pairs_, sort_pairs_, sum_parts_, start_runs_;
     Kernel count_contacts_, scatter_contacts_, sort_contacts_, return_contacts_; ///< null without contacts

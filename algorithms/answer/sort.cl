@@ -6,14 +6,6 @@
 #include "backends/portable.h"
 #include "algorithms/answer/pairs.clh"
 
-// Copies row `i` of a buffer of pairs to row `j` of another. The host has one build for both layouts.
-DEVICE void copy_pair(GLOBAL uint* to, ulong j, GLOBAL const uint* from, ulong i) {
-    if (PAIR_LAYOUT == PAIR_SLOTS)
-        ((GLOBAL WordPair*)to)[j] = ((GLOBAL const WordPair*)from)[i];
-    else
-        ((GLOBAL WordRow*)to)[j] = ((GLOBAL const WordRow*)from)[i];
-}
-
 // Rows in a buffer of `capacity` rows with a 64-bit counter.
 DEVICE uint rows_in(GLOBAL const uint* counter, uint capacity) {
     return counter[1] != 0u || counter[0] > capacity ? capacity : counter[0];
@@ -24,23 +16,23 @@ DEVICE uint place_of(const BodyTetrahedron* one, GLOBAL const uint* firsts, GLOB
     return firsts[one->body] + tetrahedron_id(ids, one->tetrahedron);
 }
 
-// counts[place of a] += 1 for each pair.
+// counts[place of a] += 1 for each pair. Stores the count before, which is the pair's place in its run.
 KERNEL void count_pairs(GLOBAL const uint* found, uint capacity, GLOBAL const uint* owners,
                         GLOBAL const uint* ids, GLOBAL const uint* firsts, GLOBAL uint* counts,
-                        GLOBAL const uint* status) {
+                        GLOBAL uint* before, GLOBAL const uint* status) {
     const uint rows = rows_in(status + STATUS_PAIRS, capacity);
     for (ulong i = GLOBAL_ID; i < rows; i += GLOBAL_COUNT) { // 32 bits might wrap around
         const PairMembers pair = members_of(found, i, owners);
-        ATOMIC_ADD(counts + place_of(&pair.a, firsts, ids), 1u);
+        before[i] = ATOMIC_ADD(counts + place_of(&pair.a, firsts, ids), 1u);
     }
 }
 
-// counts[pair] += 1 for each contact.
+// The same by pair for each contact.
 KERNEL void count_contacts(GLOBAL const uint* contact_ids, uint capacity, GLOBAL uint* counts,
-                           GLOBAL const uint* status) {
+                           GLOBAL uint* before, GLOBAL const uint* status) {
     const uint rows = rows_in(status + STATUS_CONTACTS, capacity);
     for (ulong i = GLOBAL_ID; i < rows; i += GLOBAL_COUNT)
-        ATOMIC_ADD(counts + ((GLOBAL const WordPair*)contact_ids)[i].x, 1u);
+        before[i] = ATOMIC_ADD(counts + ((GLOBAL const WordPair*)contact_ids)[i].x, 1u);
 }
 
 // The first of a work-group's part of `count` values.
@@ -75,85 +67,97 @@ KERNEL void sum_parts(GLOBAL const uint* counts, uint most, uint by_pair, GLOBAL
     sums[GROUP_ID] = all;
 }
 
-// Turns the counts into the first place of each key. Each work-item has adjacent counts of the group's part.
-KERNEL void start_runs(GLOBAL uint* counts, uint most, uint by_pair, GLOBAL const uint* sums,
-                       GLOBAL const uint* status) {
-    LOCAL_ARRAY(uint, before, GROUP_SIZE); // shares of the sum of the parts before this one
-    LOCAL_ARRAY(uint, starts, GROUP_SIZE);
-    const uint count = keys_in(status, most, by_pair);
-    const uint first = group_first(GROUP_ID, count);
-    const uint end = group_first(GROUP_ID + 1u, count);
-    const uint each = (end - first + (uint)GROUP_SIZE - 1u) / (uint)GROUP_SIZE;
-    const uint own_first = end - first > LOCAL_ID * each ? first + LOCAL_ID * each : end;
-    const uint own_end = end - own_first > each ? own_first + each : end;
-    uint sum = 0;
-    for (uint i = own_first; i < own_end; ++i) sum += counts[i];
-    starts[LOCAL_ID] = sum;
-    before[LOCAL_ID] = strided_sum(sums, 0u, GROUP_ID);
-    BARRIER;
-    if (LOCAL_ID == 0u) {
-        uint start = 0;
-        for (uint i = 0; i < (uint)GROUP_SIZE; ++i) start += before[i];
-        for (uint i = 0; i < (uint)GROUP_SIZE; ++i) {
-            const uint own = starts[i];
-            starts[i] = start;
-            start += own;
-        }
-    }
-    BARRIER;
-    uint start = starts[LOCAL_ID];
-    for (uint i = own_first; i < own_end; ++i) {
-        const uint own = counts[i];
-        counts[i] = start;
-        start += own;
+// Adjacent counts that a work-item sums in a turn. Neighbouring work-items load and store neighbouring
+// counts, and exchange them in local memory, where the counts of two work-items lie one word apart.
+#define COUNTS_EACH 16u
+#define EACH_STRIDE (COUNTS_EACH + 1u)
+
+// Replaces the values of a work-group by the sums up to and including each.
+DEVICE void scan(LOCAL uint* values) {
+    for (uint distance = 1u; distance < (uint)GROUP_SIZE; distance *= 2u) {
+        const uint before = LOCAL_ID >= distance ? values[LOCAL_ID - distance] : 0u;
+        BARRIER;
+        values[LOCAL_ID] += before;
+        BARRIER;
     }
 }
 
-// Puts each pair at a place of its run; `places` then has the end of each run. `keys`: the places of b.
+// Turns the counts into the first place of each key.
+KERNEL void start_runs(GLOBAL uint* counts, uint most, uint by_pair, GLOBAL const uint* sums,
+                       GLOBAL const uint* status) {
+    LOCAL_ARRAY(uint, staged, GROUP_SIZE * EACH_STRIDE);
+    LOCAL_ARRAY(uint, ends, GROUP_SIZE);
+    const uint count = keys_in(status, most, by_pair);
+    const uint end = group_first(GROUP_ID + 1u, count);
+    uint first = group_first(GROUP_ID, count);
+    ends[LOCAL_ID] = strided_sum(sums, 0u, GROUP_ID);
+    BARRIER;
+    scan(ends);
+    uint start = ends[GROUP_SIZE - 1]; // the sum of the parts before this one
+    LOCAL uint* own = staged + LOCAL_ID * EACH_STRIDE;
+    do { // runs at least once, as loops with barriers must
+        const uint left = end - first;
+        for (uint i = LOCAL_ID; i < COUNTS_EACH * (uint)GROUP_SIZE; i += (uint)GROUP_SIZE)
+            staged[i / COUNTS_EACH * EACH_STRIDE + i % COUNTS_EACH] = i < left ? counts[first + i] : 0u;
+        BARRIER;
+        uint sum = 0;
+        for (uint i = 0; i < COUNTS_EACH; ++i) sum += own[i];
+        ends[LOCAL_ID] = sum;
+        BARRIER;
+        scan(ends);
+        uint next = start + ends[LOCAL_ID] - sum;
+        start += ends[GROUP_SIZE - 1];
+        for (uint i = 0; i < COUNTS_EACH; ++i) {
+            const uint value = own[i];
+            own[i] = next;
+            next += value;
+        }
+        BARRIER;
+        for (uint i = LOCAL_ID; i < COUNTS_EACH * (uint)GROUP_SIZE && i < left; i += (uint)GROUP_SIZE)
+            counts[first + i] = staged[i / COUNTS_EACH * EACH_STRIDE + i % COUNTS_EACH];
+        BARRIER;
+        first = left > COUNTS_EACH * (uint)GROUP_SIZE ? first + COUNTS_EACH * (uint)GROUP_SIZE : end;
+    } while (first < end);
+}
+
+// Puts the place of b of each pair at its place in the run of a.
 KERNEL void scatter_pairs(GLOBAL const uint* found, uint capacity, GLOBAL const uint* owners,
-                          GLOBAL const uint* ids, GLOBAL const uint* firsts, GLOBAL uint* places,
-                          GLOBAL uint* rows, GLOBAL uint* keys, GLOBAL const uint* status) {
+                          GLOBAL const uint* ids, GLOBAL const uint* firsts, GLOBAL const uint* places,
+                          GLOBAL const uint* before, GLOBAL uint* keys, GLOBAL const uint* status) {
     const uint count = rows_in(status + STATUS_PAIRS, capacity);
     for (ulong i = GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
         const PairMembers pair = members_of(found, i, owners);
-        const uint at = ATOMIC_ADD(places + place_of(&pair.a, firsts, ids), 1u);
-        copy_pair(rows, at, found, i);
+        const uint at = places[place_of(&pair.a, firsts, ids)] + before[i];
         keys[at] = place_of(&pair.b, firsts, ids);
     }
 }
 
-// The same for contacts: their row numbers, with the features as keys.
-KERNEL void scatter_contacts(GLOBAL const uint* contact_ids, uint capacity, GLOBAL uint* places,
-                             GLOBAL uint* rows, GLOBAL uint* keys, GLOBAL const uint* status) {
+// Puts each contact at its place in its pair's run: its row number, and its feature as key.
+KERNEL void scatter_contacts(GLOBAL const uint* contact_ids, uint capacity, GLOBAL const uint* places,
+                             GLOBAL const uint* before, GLOBAL uint* rows, GLOBAL uint* keys,
+                             GLOBAL const uint* status) {
     const uint count = rows_in(status + STATUS_CONTACTS, capacity);
     for (ulong i = GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
         const WordPair contact = ((GLOBAL const WordPair*)contact_ids)[i];
-        const uint at = ATOMIC_ADD(places + contact.x, 1u);
+        const uint at = places[contact.x] + before[i];
         rows[at] = (uint)i;
         keys[at] = contact.y;
     }
 }
 
-DEVICE void swap_words(GLOBAL uint* words, ulong i, ulong j) {
-    const uint word = words[i];
-    words[i] = words[j];
-    words[j] = word;
+DEVICE void swap_keys(GLOBAL uint* keys, uint i, uint j) {
+    const uint key = keys[i];
+    keys[i] = keys[j];
+    keys[j] = key;
 }
 
-// Swaps two rows of `words` words each, and their keys.
-DEVICE void swap_rows(GLOBAL uint* keys, GLOBAL uint* rows, uint words, uint i, uint j) {
-    swap_words(keys, i, j);
-    for (uint word = 0; word < words; ++word)
-        swap_words(rows, (ulong)words * i + word, (ulong)words * j + word);
-}
-
-// Restores the heap of rows first..first + count - 1 below `node`.
-DEVICE void sift(GLOBAL uint* keys, GLOBAL uint* rows, uint words, uint first, uint count, uint node) {
+// Restores the heap of the keys of rows first..first + count - 1 below `node`.
+DEVICE void sift(GLOBAL uint* keys, uint first, uint count, uint node) {
     while (2u * node + 1u < count) {
         uint child = 2u * node + 1u;
         if (child + 1u < count && keys[first + child + 1u] > keys[first + child]) ++child;
         if (keys[first + node] >= keys[first + child]) return;
-        swap_rows(keys, rows, words, first + node, first + child);
+        swap_keys(keys, first + node, first + child);
         node = child;
     }
 }
@@ -161,13 +165,13 @@ DEVICE void sift(GLOBAL uint* keys, GLOBAL uint* rows, uint words, uint first, u
 // Longer runs are sorted as a heap by one work-item: ranks take time with the square of a run's length.
 #define MOST_RANKED 512u
 
-// Sorts rows first..end - 1 by their keys.
-DEVICE void sort_run(GLOBAL uint* keys, GLOBAL uint* rows, uint words, uint first, uint end) {
+// Sorts the keys of rows first..end - 1.
+DEVICE void sort_run(GLOBAL uint* keys, uint first, uint end) {
     const uint count = end - first;
-    for (uint node = count / 2u; node > 0u; --node) sift(keys, rows, words, first, count, node - 1u);
+    for (uint node = count / 2u; node > 0u; --node) sift(keys, first, count, node - 1u);
     for (uint last = count - 1u; last > 0u; --last) {
-        swap_rows(keys, rows, words, first, first + last);
-        sift(keys, rows, words, first, last, 0u);
+        swap_keys(keys, first, first + last);
+        sift(keys, first, last, 0u);
     }
 }
 
@@ -175,11 +179,11 @@ DEVICE void sort_run(GLOBAL uint* keys, GLOBAL uint* rows, uint words, uint firs
 // 1.
 #define STARTS (TEAM_SIZE + 1)
 
-// Loads the runs of a team from key `key` - TEAM_LANE on; keys from `count` on have no rows.
-DEVICE void load_starts(GLOBAL const uint* places, uint count, ulong key, LOCAL uint* starts) {
-    if (TEAM_LANE == 0u)
-        starts[0] = key == 0u || count == 0u ? 0u : places[key < count ? key - 1u : count - 1u];
-    starts[TEAM_LANE + 1u] = count == 0u ? 0u : places[key < count ? key : count - 1u];
+// Loads the runs of a team from key `key` - TEAM_LANE on. Keys from `count` on have no rows. `end`: the
+// number of all rows.
+DEVICE void load_starts(GLOBAL const uint* places, uint count, uint end, ulong key, LOCAL uint* starts) {
+    starts[TEAM_LANE] = key < count ? places[key] : end;
+    if (TEAM_LANE == TEAM_SIZE - 1u) starts[TEAM_SIZE] = key + 1u < count ? places[key + 1u] : end;
 }
 
 // The run that contains `row`.
@@ -196,37 +200,71 @@ DEVICE uint run_of(LOCAL const uint* starts, uint row) {
     return low;
 }
 
-// The place of a row in its run, which is not too long.
+// Number of the keys of a quad that are less than `key`.
+DEVICE uint less_in_quad(WordRow quad, uint key) {
+    return (quad.x < key ? 1u : 0u) + (quad.y < key ? 1u : 0u) + (quad.z < key ? 1u : 0u)
+           + (quad.w < key ? 1u : 0u);
+}
+
+// The same of those in rows first..end - 1. `at`: the quad's first row.
+DEVICE uint less_in_part(WordRow quad, uint key, uint at, uint first, uint end) {
+    uint less = quad.x < key && at >= first ? 1u : 0u;
+    less += quad.y < key && at + 1u >= first && at + 1u < end ? 1u : 0u;
+    less += quad.z < key && at + 2u >= first && at + 2u < end ? 1u : 0u;
+    return less + (quad.w < key && at + 3u < end ? 1u : 0u);
+}
+
+// The place of a row in its run, which is not too long. Reads the keys in aligned quads, of which the buffer
+// has whole ones.
 DEVICE uint ranked_place(GLOBAL const uint* keys, uint first, uint end, uint row) {
+    GLOBAL const WordRow* quads = (GLOBAL const WordRow*)keys;
     const uint key = keys[row];
-    uint place = first;
-    for (uint other = first; other < end; ++other) place += keys[other] < key ? 1u : 0u;
+    const uint first_quad = first / 4u;
+    const uint last_quad = (end - 1u) / 4u;
+    uint place = first + less_in_part(quads[first_quad], key, 4u * first_quad, first, end);
+    for (uint quad = first_quad + 1u; quad < last_quad; ++quad) place += less_in_quad(quads[quad], key);
+    if (last_quad > first_quad) place += less_in_part(quads[last_quad], key, 4u * last_quad, first, end);
     return place;
 }
 
+// Writes row `at` of the pairs from the places of a and b. `solids`: by place, the words of a tetrahedron in
+// pairs: its slot, or its body and its position there.
+DEVICE void write_solids(GLOBAL uint* found, uint at, GLOBAL const uint* solids, uint a, uint b) {
+    if (PAIR_LAYOUT == PAIR_SLOTS) {
+        const WordPair pair = {solids[a], solids[b]};
+        ((GLOBAL WordPair*)found)[at] = pair;
+    } else {
+        const WordPair first = ((GLOBAL const WordPair*)solids)[a];
+        const WordPair second = ((GLOBAL const WordPair*)solids)[b];
+        const WordRow pair = {first.x, second.x, first.y, second.y};
+        ((GLOBAL WordRow*)found)[at] = pair;
+    }
+}
+
 // Sorts the run of each of `count` keys, and writes it to `found`.
-KERNEL void sort_pairs(GLOBAL const uint* places, uint count, GLOBAL uint* rows, GLOBAL uint* keys,
-                       GLOBAL uint* found) {
+KERNEL void sort_pairs(GLOBAL const uint* places, uint count, uint capacity, GLOBAL uint* keys,
+                       GLOBAL const uint* solids, GLOBAL uint* found, GLOBAL const uint* status) {
     LOCAL_ARRAY(uint, all_starts, TEAM_COUNT * STARTS);
     LOCAL uint* starts = all_starts + TEAM_ID * STARTS;
     ulong key = GLOBAL_ID;
     ulong first_of_group = GROUP_ID * (ulong)GROUP_SIZE;
     do { // runs at least once, as loops with barriers must
-        load_starts(places, count, key, starts);
+        load_starts(places, count, rows_in(status + STATUS_PAIRS, capacity), key, starts);
         TEAM_BARRIER;
-        for (ulong i = (ulong)starts[0] + TEAM_LANE; i < starts[TEAM_SIZE];
-             i += TEAM_SIZE) { // 32 bits might wrap
-            const uint row = (uint)i;
+        const uint first_key = (uint)key - TEAM_LANE;
+        for (ulong i = (ulong)starts[0] + TEAM_LANE; i < starts[TEAM_SIZE]; i += TEAM_SIZE) {
+            const uint row = (uint)i; // `i` has more bits, because a sum of 32 might wrap around
             const uint run = run_of(starts, row);
             const uint first = starts[run];
             const uint end = starts[run + 1u];
-            if (end - first <= MOST_RANKED) copy_pair(found, ranked_place(keys, first, end, row), rows, row);
+            if (end - first <= MOST_RANKED)
+                write_solids(found, ranked_place(keys, first, end, row), solids, first_key + run, keys[row]);
         }
         const uint first = starts[TEAM_LANE];
         const uint end = starts[TEAM_LANE + 1u];
         if (end - first > MOST_RANKED) {
-            sort_run(keys, rows, PAIR_WORDS, first, end);
-            for (uint row = first; row < end; ++row) copy_pair(found, row, rows, row);
+            sort_run(keys, first, end);
+            for (uint row = first; row < end; ++row) write_solids(found, row, solids, (uint)key, keys[row]);
         }
         TEAM_BARRIER;
         key += GLOBAL_COUNT;
@@ -250,8 +288,8 @@ DEVICE void copy_contact(const ContactRows* contacts, uint to, uint from) {
 }
 
 // Sorts the run of each of the pairs, and copies the contacts in this order. A pair has few contacts.
-KERNEL void sort_contacts(GLOBAL const uint* places, uint pair_capacity, GLOBAL const uint* rows,
-                          GLOBAL const uint* keys, GLOBAL const uint* contact_ids,
+KERNEL void sort_contacts(GLOBAL const uint* places, uint pair_capacity, uint capacity,
+                          GLOBAL const uint* rows, GLOBAL const uint* keys, GLOBAL const uint* contact_ids,
                           GLOBAL const real* contact_values, GLOBAL uint* sorted_ids,
                           GLOBAL real* sorted_values, GLOBAL const uint* status) {
     LOCAL_ARRAY(uint, all_starts, TEAM_COUNT * STARTS);
@@ -261,7 +299,7 @@ KERNEL void sort_contacts(GLOBAL const uint* places, uint pair_capacity, GLOBAL 
     ulong key = GLOBAL_ID;
     ulong first_of_group = GROUP_ID * (ulong)GROUP_SIZE;
     do { // runs at least once, as loops with barriers must
-        load_starts(places, count, key, starts);
+        load_starts(places, count, rows_in(status + STATUS_CONTACTS, capacity), key, starts);
         TEAM_BARRIER;
         for (ulong i = (ulong)starts[0] + TEAM_LANE; i < starts[TEAM_SIZE]; i += TEAM_SIZE) {
             const uint row = (uint)i;

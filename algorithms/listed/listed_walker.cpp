@@ -40,8 +40,10 @@ ListedWalker::ListedWalker(TileTrees& trees, const BuildContext& context, Launch
 void ListedWalker::do_compile(const WalkBuild& build) {
     is_windowed_ = build.windowed;
     auto defines = levels_.defines(build);
-    auto upper_defines = defines; // those of tiled by default, because they do not depend on leaves
-    define(upper_defines, parameters::slabs, Slabs::three);
+    auto upper_defines = defines;
+    // The upper levels do not depend on leaves. The host device has them for more levels of processors with
+    // the default of tiled; a compiler also compiles the leaves, which may then need too much local memory.
+    if (device_.info().id == "host") define(upper_defines, parameters::slabs, Slabs::three);
     levels_.compile(upper_defines);
     motion_.compile(build.output);
     defines.erase(std::string(parameters::slabs.define)); // listed.cl has bounds along all directions

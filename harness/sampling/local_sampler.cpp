@@ -104,8 +104,9 @@ void LocalSampler::add_errors(Truths& truths, std::size_t index, const FrameResu
     out_.errors->add(truths.errors(geometry_, index, answer, report));
 }
 
-/// The truth of pairs is of all pairs.
+/// The truth of pairs is of all pairs. That of motion has rounded positions.
 bool LocalSampler::has_truth(const Truths& truths) const {
+    if (geometry_.motion == Motion::linear && geometry_.placement == Placement::exact) return false;
     return truths.amount() == TruthAmount::contacts || out_.settings[parameters::output] != Output::contacts;
 }
 

@@ -105,7 +105,7 @@ TEST_P(BroadSessions, ExplicitPairsReplaceTheBroadPhase) {
             EXPECT_EQ(session->run(frame).digest(), right.digest);
             for (const auto& pair : session->run(frame, {&first, 1}).download())
                 EXPECT_EQ((BodyPair{pair.body_a, pair.body_b}), first);
-            EXPECT_EQ(session->run(frame, std::span<const BodyPair>()).count, 0u);
+            EXPECT_EQ(session->run(frame, {}).count, 0u);
             EXPECT_EQ(session->run(frame, all_pairs(scene)).contact_digest(), right.contact_digest);
             EXPECT_EQ(session->run(frame).contact_digest(), right.contact_digest);
         }

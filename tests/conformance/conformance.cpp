@@ -261,7 +261,7 @@ TEST_P(Conformance, EmptyAnswerIsEmpty) {
         const std::array devices{&on};
         const auto session = traversal->prepare(devices, scene, settings);
         EXPECT_EQ(run_among_all(*session, scene, frame).count, 0u);
-        EXPECT_EQ(session->run(frame, std::span<const BodyPair>()).count, 0u);
+        EXPECT_EQ(session->run(frame, {}).count, 0u);
     }
 }
 

@@ -2,7 +2,7 @@
 // Every algorithm on every device misses no intersecting pair of any family with rounding=safe.
 #include "algorithms/narrow_phase/contact_settings.h"
 #include "harness/plans/frames.h"
-#include "harness/verify/oracle/frame_truth.h"
+#include "harness/verify/oracle/motion_truth.h"
 #include "base/error.h"
 #include "scenes/hard/hard.h"
 #include "tests/support/cells.h"
@@ -140,6 +140,48 @@ TEST_P(HardAlgorithms, MissNothingWithinABody) {
         }
     }
     EXPECT_GT(met_, GetParam() == "host" ? 10000u : 1000u);
+}
+
+/// No pair that meets between two frames is missed: by the families about motion, and by all others that
+/// move.
+TEST_P(HardAlgorithms, MissNothingOnTheWay) {
+    std::size_t number = 0;
+    for (const auto& family : hard_families()) {
+        const auto scene = make_scene(specification(family));
+        if (family.name == "not-finite" || scene.frame_count < 2) continue;
+        const auto from = scene.frame(0), to = scene.frame(1);
+        ++number;
+        for (const std::string precision : {"float", "double"}) {
+            if (!long_form() && GetParam() != "host" && precision == "double") continue;
+            const auto self = family.self ? SelfPairs::on : SelfPairs::off;
+            const auto truth =
+                motion_truth(scene, from, to, precision == "float" ? Precision::fp32 : Precision::fp64, self);
+            met_ += truth.colliding.size();
+            for (std::size_t i = 0; i < algorithms().size(); ++i) {
+                if (!long_form() && GetParam() != "host" && i != number % algorithms().size()) continue;
+                const auto* traversal = algorithms()[i];
+                SCOPED_TRACE(fmt::format("{} {} {}", family.name, traversal->name(), precision));
+                SettingTexts given{{"k", family.motion && GetParam() == "host" ? "26" : "18"},
+                                   {"precision", precision},
+                                   {"motion", "linear"},
+                                   {"self", family.self ? "on" : "off"},
+                                   {"work_items", "64"},
+                                   {"pair_capacity", "8192"},
+                                   {"contact_rule", "none"}};
+                if (traversal->name() == "gproximity") given["queue_bytes"] = "1048576";
+                const std::array devices{&device(GetParam())};
+                const auto found =
+                    traversal
+                        ->prepare(devices, scene,
+                                  resolve(traversal->parameters(), {}, given, traversal->name()))
+                        ->run(from, to, all_pairs(scene, self))
+                        .download();
+                EXPECT_TRUE(std::ranges::includes(found, truth.colliding));
+            }
+        }
+    }
+    EXPECT_GT(number, 10u);
+    EXPECT_GT(met_, 100u);
 }
 
 /// With decision=exact, k changes rejected pairs only. The devices' kernels compute equal bits, so the host

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/memory.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -47,6 +48,28 @@ const FrameTruth& Truths::truth_of(const FramePosition& position, const Report& 
     return truths_.emplace(position, std::move(truth)).first->second;
 }
 
+const MotionTruth& Truths::motion_truth_of(const FramePosition& position, const Report& report) {
+    if (const auto found = motion_truths_.find(position); found != motion_truths_.end()) return found->second;
+    const auto& [positions, index] = position;
+    const auto state = range_.state(index, Motion::linear, positions.origin);
+    auto truth = motion_truth(scene_, *state.frame, *state.next, positions.precision, positions.self,
+                              {report, free_memory()});
+    return motion_truths_.emplace(position, std::move(truth)).first->second;
+}
+
+/// Pairs that the truth cannot decide are in no error.
+PairErrors Truths::motion_errors(const FramePosition& position, const FrameAnswer& answer,
+                                 std::vector<Pair> pairs, const Report& report) {
+    const auto& motion = motion_truth_of(position, report);
+    FrameTruth truth;
+    truth.overlapping =
+        answer.walked == Walked::boundary ? of_boundary(scene_, motion.colliding) : motion.colliding;
+    truth.invalid = motion.invalid;
+    std::erase_if(pairs,
+                  [&](const Pair& pair) { return std::ranges::binary_search(motion.undecided, pair); });
+    return pair_errors(truth, pairs);
+}
+
 const FrameTruth& Truths::walked_truth_of(const FramePosition& position, Walked walked,
                                           const Report& report) {
     const auto& whole = truth_of(position, report);
@@ -74,7 +97,11 @@ const AnswerErrors& Truths::errors(const Geometry& geometry, std::size_t index, 
                                    const Report& report) {
     const FramePosition position{{geometry.precision, geometry.placement, geometry.origin, answer.self},
                                  index};
-    const std::tuple key{geometry.precision, geometry.origin, position, answer.walked,
+    const std::tuple key{geometry.precision,
+                         geometry.origin,
+                         geometry.motion,
+                         position,
+                         answer.walked,
                          Numbers{answer.pairs.count, answer.pairs.a, answer.pairs.b, answer.contacts.count,
                                  answer.contacts.a, answer.contacts.b}};
     if (const auto found = errors_.find(key); found != errors_.end()) return found->second;
@@ -94,11 +121,13 @@ std::string Truths::cache_key(const Geometry& geometry, const FramePosition& pos
     const auto& p = answer.pairs;
     const auto& c = answer.contacts;
     return fmt::format(
-        "frame {:016x}{}, precision {}, origin {}, positions {} {}{}, amount {} {}, walked {}, "
+        "frame {:016x}{}{}, precision {}, origin {}, positions {} {}{}, amount {} {}, walked {}, "
         "pairs {} {:x} {:x}, contacts {} {} {:x} {:x}",
-        digest_of(*range_.frame(index)), index == 0 ? " first" : "", static_cast<int>(geometry.precision),
-        static_cast<int>(geometry.origin), static_cast<int>(positions.precision),
-        static_cast<int>(positions.placement),
+        digest_of(*range_.frame(index)),
+        geometry.motion == Motion::linear ? fmt::format(" to {:016x}", digest_of(*range_.frame(index + 1)))
+                                          : "",
+        index == 0 ? " first" : "", static_cast<int>(geometry.precision), static_cast<int>(geometry.origin),
+        static_cast<int>(positions.precision), static_cast<int>(positions.placement),
         positions.self == SelfPairs::off ? "" : fmt::format(" self {}", static_cast<int>(positions.self)),
         static_cast<int>(amount_), most_contacts_, static_cast<int>(answer.walked), p.count, p.a, p.b,
         answer.makes_contacts, c.count, c.a, c.b);
@@ -114,11 +143,16 @@ const Drift& Truths::drift_of(const Geometry& geometry) {
 /// A download may throw; the caller then stores nothing, and the next cell tries again.
 AnswerErrors Truths::errors_of(const Geometry& geometry, const FramePosition& position,
                                const FrameAnswer& answer, const Report& report) {
-    const auto& truth = walked_truth_of(position, answer.walked, report);
     AnswerErrors errors;
     const auto pairs = answer.download();
     errors.frames = 1;
-    errors.pairs = pair_errors(truth, pairs);
+    if (geometry.motion == Motion::linear) {
+        errors.pairs = motion_errors(position, answer, pairs, report);
+        errors.invalid_tetrahedra = motion_truth_of(position, report).invalid.size();
+        if (!answer.makes_contacts) return errors;
+    }
+    const auto& truth = walked_truth_of(position, answer.walked, report);
+    if (geometry.motion == Motion::none) errors.pairs = pair_errors(truth, pairs);
     errors.decided = truth.decisions;
     errors.invalid_tetrahedra = truth.invalid.size();
     if (amount_ == TruthAmount::contacts && position.second == 0) errors.drift = drift_of(geometry);

@@ -4,6 +4,7 @@
 #include "algorithms/traversal.h"
 #include "algorithms/hierarchy/order.h"
 #include "harness/verify/accuracy/answer_errors.h"
+#include "harness/verify/oracle/motion_truth.h"
 #include "harness/plans/frames.h"
 #include "harness/verify/verification_cache.h"
 
@@ -44,8 +45,9 @@ public:
     TruthAmount amount() const { return amount_; }
 
     /// Errors of a cell's answer for frame number `index` of the range. They depend on the precision,
-    /// placement and origin of its geometry. Throws InputError without enough memory for the truth of that
-    /// frame. For frame 0 it also throws if all frames together would need too much.
+    /// placement and origin of its geometry. With motion=linear, errors of pairs are those of the pairs that
+    /// meet on the way to the next frame; placement must be rounded. Throws InputError without enough memory
+    /// for the truth of that frame. For frame 0 it also throws if all frames together would need too much.
     const AnswerErrors& errors(const Geometry& geometry, std::size_t index, const FrameAnswer& answer,
                                const Report& report = {});
 
@@ -53,6 +55,9 @@ private:
     using FramePosition = std::pair<Positions, std::size_t>;
     using Numbers = std::array<std::uint64_t, 6>; ///< of the two digests
     const FrameTruth& truth_of(const FramePosition& position, const Report& report);
+    const MotionTruth& motion_truth_of(const FramePosition& position, const Report& report);
+    PairErrors motion_errors(const FramePosition& position, const FrameAnswer& answer,
+                             std::vector<Pair> pairs, const Report& report);
     const FrameTruth& walked_truth_of(const FramePosition& position, Walked walked, const Report& report);
     const ContactTruths& contact_truths_of(const FramePosition& position, Walked walked,
                                            const FrameTruth& truth);
@@ -68,10 +73,11 @@ private:
     std::size_t most_contacts_;
     VerificationCache cache_;
     std::map<FramePosition, FrameTruth> truths_;
+    std::map<FramePosition, MotionTruth> motion_truths_;  ///< from each frame to the next
     std::map<FramePosition, FrameTruth> boundary_truths_; ///< of Walked::boundary
     std::map<std::pair<FramePosition, Walked>, ContactTruths> contact_truths_;
     std::map<std::pair<Precision, Origin>, Drift> drifts_; ///< of the first frame
-    std::map<std::tuple<Precision, Origin, FramePosition, Walked, Numbers>, AnswerErrors> errors_;
+    std::map<std::tuple<Precision, Origin, Motion, FramePosition, Walked, Numbers>, AnswerErrors> errors_;
 };
 
 } // namespace tandem
