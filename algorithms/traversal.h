@@ -81,6 +81,7 @@ public:
     FrameResult run(const DeviceFrame& frame, const DeviceFrame& next) {
         return run_among(DeviceFrameInput(frame, &next), std::nullopt);
     }
+    FrameResult run(const DeviceFrameInput& input) { return run_among(input, std::nullopt); }
     FrameResult run(const DeviceFrame& frame, const DeviceFrame& next, std::span<const BodyPair> body_pairs) {
         return run_among(DeviceFrameInput(frame, &next), body_pairs);
     }

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """collider.py PROGRAM SOURCE: answers of tandem.Collider of Python, as installed beside the program, equal those of
-tandem run on every device, also with vertices, with arrays in memory of the device, and with algorithm auto."""
+tandem run on every device, also with vertices, between two frames, with arrays in memory of the device, and with
+algorithm auto."""
 import json
 import sys
 import unittest
@@ -136,6 +137,77 @@ class Answers(ColliderCase):
         self.assertIn("tiled", tandem.algorithms())
 
 
+class Swept(ColliderCase):
+    """Setting motion=linear: pairs of a frame and its successor."""
+    def passing(self):
+        """Poses of two frames without pairs, between which body 1 passes through body 0; and their scene for the program."""
+        frames = [[POSES[0], [x, 0.125, 0.0625, *turn]] for x, turn in ((-20.0, [1, 0, 0, 0]), (20.0, [0.98, 0.1, 0.05, 0.15]))]
+        meshes = {f"part{i}": {"file": file.name} for i, file in enumerate(self.files)}
+        bodies = [{"mesh": f"part{i}", "poses": [frame[i] for frame in frames]} for i in range(2)]
+        file = self.work / "passing.json"
+        file.write_text(json.dumps({"name": "passing", "frames": 2, "meshes": meshes, "bodies": bodies}))
+        return frames, file
+
+    def test_a_body_passes_through_another(self):
+        (before, after), file = self.passing()
+        for device in DEVICES:
+            for algorithm, settings in (("tiled", {}), ("chunked", {"k": 8})):
+                with self.subTest(device=device, algorithm=algorithm):
+                    given = {**self.small(algorithm), **settings, "motion": "linear", "decision": "exact"}
+                    pairs, contacts, _ = self.dumps(file, "--frames", 0, "--algorithm", algorithm, "--device", device, *sets(given))
+                    self.assertGreater(len(pairs), 10)
+                    collider = tandem.Collider(self.meshes, algorithm, device, **given)
+                    for _ in range(2):  # the next frame is as good
+                        answer = collider.run(before, next_poses=after)
+                        self.assertTrue((answer.pairs() == pairs).all())
+                        self.assertEqual((answer.contact_count, len(contacts)), (0, 0))
+                    self.assertEqual([collider.count(frame, next_poses=frame) for frame in (before, after)], [0, 0])
+                    self.assertEqual(collider.digest(before, next_poses=after), answer.digest())
+                    self.assertTrue((collider.pairs(before, next_poses=after) == pairs).all())
+                    contacts = self.collider(algorithm=algorithm, decision="exact").contacts(POSES).pairs
+                    self.assertGreater(len(contacts), 10)
+                    self.assertTrue((collider.contacts(POSES, next_poses=after).pairs == contacts).all(), "those of the frame")
+
+    def test_deformable_bodies(self):
+        scene = tandem.make_scene("plates")
+        given = {"motion": "linear", "decision": "exact"}
+        for device in DEVICES:
+            collider = self.collider(scene.meshes, bodies=scene.bodies, deformable=scene.deformable, device=device, **given)
+            dumped = self.dumps("plates", "--frames", 40, "--algorithm", "tiled", "--device", device, *sets({**self.small("tiled"), **given}))
+            poses, vertices = [scene.poses(frame) for frame in (40, 41)], [scene.vertices(frame) for frame in (40, 41)]
+            self.expect_answer(collider.run(poses[0], vertices[0], next_poses=poses[1], next_vertices=vertices[1]), dumped)
+            self.expect_answer(collider.run(vertices=vertices[0], next_vertices=tuple(vertices[1].values())), dumped)
+            self.assertNotEqual(len(dumped[0]), collider.count(vertices=vertices[0], next_vertices=vertices[0]))
+
+    def test_what_is_left_out_of_a_successor_is_at_rest(self):
+        given = {"motion": "linear", "contact_rule": "none"}
+        first, second = (numpy.array(points) for points, _ in self.parts)
+        moved = second + [0.5, 0.25, 0]
+        soft, mixed = self.collider(deformable=True, **given), self.collider(deformable=[1], **given)
+        whole = soft.digest(vertices=[first + 1, moved], next_vertices=[first, moved])
+        self.assertEqual(soft.digest(vertices=[first + 1, moved], next_vertices={1: moved}), whole)
+        self.assertNotEqual(soft.digest(vertices=[first + 1, moved], next_vertices=[first + 1, moved]), whole)
+        poses, still = [[3, 0, 0, 1, 0, 0, 0], POSES[0]], [POSES[0]] * 2
+        whole = mixed.digest(poses, [moved], next_poses=still, next_vertices=[second])
+        self.assertEqual(mixed.digest(poses, [moved], next_poses=still), whole)
+        self.assertEqual(mixed.digest(poses, [moved], next_vertices=[second]), whole)
+        self.assertNotEqual(mixed.digest(poses, [moved], next_poses=poses), whole)
+
+    def test_auto_chooses_between_two_frames(self):
+        (before, after), _ = self.passing()
+        given = {"motion": "linear", "contact_rule": "none"}
+        right = self.collider(**given).digest(before, next_poses=after)
+        self.assertGreater(right.count, 10)
+        auto = [tandem.Collider(self.meshes, "auto", pair_capacity=65536, queue_bytes=65536, **given) for _ in range(2)]
+        self.assertGreater(len(auto[0].tune(before, seconds=0.3, next_poses=after)), 3)
+        for collider in auto:
+            self.assertEqual(collider.digest(before, next_poses=after), right)
+            self.assertEqual((collider.algorithm in tandem.algorithms(), collider.settings["motion"]), (True, "linear"))
+        soft = tandem.Collider(self.meshes, "auto", deformable=True, pair_capacity=65536, queue_bytes=65536, **given)
+        parts = tuple(points for points, _ in self.meshes)
+        self.assertGreater(len(soft.tune(vertices=parts, seconds=0.3, next_vertices=parts)), 3)
+
+
 class Auto(ColliderCase):
     def test_keeps_the_fastest_and_names_it(self):
         collider = tandem.Collider(self.meshes, "auto", precision="double", pair_capacity=65536, contact_capacity=65536, queue_bytes=65536)
@@ -197,17 +269,35 @@ class DeviceInput(ColliderCase):
                     if device == "host":
                         self.assertEqual(mixed._core.addresses, [address(rows), address(points[1])])
 
+    def test_two_frames_have_the_answers_of_host_memory(self):
+        given = {"motion": "linear", "contact_rule": "none"}
+        points = [self.meshes[1][0] + [shift, 0, 0] for shift in (-9.0, 9.0)]
+        rows = [numpy.array(POSES) + [0, shift, 0, 0, 0, 0, 0] for shift in (0, 0.25)]
+        for device in DEVICES:
+            mixed = self.collider(device=device, deformable=[1], **given)
+            right = mixed.run(rows[0], [points[0]], next_poses=rows[1], next_vertices=[points[1]])
+            self.assertGreater(right.count, 10)
+            for _ in range(2):
+                mine = mixed._core.run_device_input(rows[0], [None, points[0]], rows[1], [None, points[1]])
+                self.assertEqual(mine.digest(), tuple(right.digest()))
+            if device == "host":
+                self.assertEqual(mixed._core.addresses, [address(array) for array in (rows[0], points[0], rows[1], points[1])])
+            still = mixed._core.run_device_input(rows[0], [None, points[0]], None, [None, points[0]])
+            self.assertEqual(still.digest(), tuple(mixed.digest(rows[0], [points[0]], next_vertices=[points[0]])))
+
     def test_values_out_of_range_give_the_same_error(self):
         collider, soft = self.collider(), self.collider(deformable=[1])
+        swept = self.collider(motion="linear", contact_rule="none")
         for at, value in (((0, 0), numpy.inf), ((1, 3), numpy.nan), ((1, slice(3, 7)), 0), ((1, 2), -1e37)):
             rows = numpy.array(POSES)
             rows[at] = value
             messages = []
-            for run in (collider.run, lambda given: collider._core.run_device_input(given, [])):
+            for run in (collider.run, lambda given: collider._core.run_device_input(given, []),
+                        lambda given: swept.run(POSES, next_poses=given), lambda given: swept._core.run_device_input(numpy.array(POSES, float), [], given)):
                 with self.assertRaises(ValueError) as caught:
                     run(rows)
                 messages.append(str(caught.exception))
-            self.assertEqual(messages[0], messages[1])
+            self.assertEqual(messages, [messages[0]] * 2 + ["successor: " + messages[0]] * 2)
         points = self.meshes[1][0].copy()
         points[3, 2] = numpy.nan
         with self.assertRaisesRegex(ValueError, "body 1: vertex 3 is not finite"):

@@ -68,7 +68,8 @@ class ColliderCase(Case):
         paths = self.work / "pairs.csv", self.work / "contacts.csv"
         status, text, errors = run_tandem("run", *arguments, "--no-check", "--no-count", "--dump-pairs", paths[0], "--dump-contacts", paths[1])
         self.assertEqual((status, errors), (0, []), text)
-        pairs, contacts = (numpy.array(list(csv.reader(path.read_text().splitlines()))[1:], dtype=float) for path in paths)
+        pairs, contacts = (numpy.array(list(csv.reader(path.read_text().splitlines()))[1:], dtype=float).reshape(-1, columns)
+                           for path, columns in zip(paths, (5, 12)))
         return pairs[:, 1:].astype(int), contacts[:, 1:5].astype(int), contacts[:, 5:]
 
     def expect_answer(self, answer, dumped):

@@ -88,6 +88,28 @@ class BadInput(ColliderCase):
         self.expect(ValueError, "no body is deformable; make the collider with deformable=True", collider.pairs, vertices=[points])
         self.assertTrue((collider.pairs(POSES) == self.collider().pairs(POSES)).all(), "goes on after bad input")
 
+    def test_successors(self):
+        still, swept = self.collider(), self.collider(deformable=[1], motion="linear", contact_rule="none")
+        points, poses = self.meshes[1][0], numpy.array(POSES)
+        bad = points.copy()
+        bad[3, 2] = float("nan")
+        for run in (swept.run, tandem.Collider(self.meshes, "auto", motion="linear", contact_rule="none").run):
+            self.expect(ValueError, "setting motion=linear needs the frame's successor; give next_poses or next_vertices", run, POSES)
+        for run in (still.run, still.count, tandem.Collider(self.meshes, "auto").tune):
+            self.expect(ValueError, "next_poses and next_vertices are for setting motion=linear", run, POSES, next_poses=POSES)
+        for kind, words, named in (
+                (ValueError, "next_poses: shape (2, 6); expected (n, 7)", {"next_poses": poses[:, :6]}), (ValueError, "next_poses: 1 rows for 2 bodies", {"next_poses": poses[:1]}),
+                (TypeError, "next_poses: type bool", {"next_poses": poses > 0}), (ValueError, "successor: poses: row 0 is not finite", {"next_poses": poses + [float("inf"), 0, 0, 0, 0, 0, 0]}),
+                (ValueError, "successor: body 0 has a coordinate of 1e+37, and precision=float", {"next_poses": poses + [1e37, 0, 0, 0, 0, 0, 0]}),
+                (ValueError, "next_vertices: 2 arrays for 1 deformable bodies", {"next_vertices": [points, points]}), (ValueError, "next_vertices: 0 is not a deformable body", {"next_vertices": {0: points}}),
+                (ValueError, "next_vertices of body 1: shape (16, 2)", {"next_vertices": [points[:, :2]]}), (ValueError, "next_vertices: 15 rows for body 1", {"next_vertices": [points[1:]]}),
+                (ValueError, "successor: body 1: vertex 3 is not finite", {"next_vertices": [bad]}), (TypeError, "next_vertices: type int; expected a list", {"next_vertices": 5})):
+            with self.subTest(words):
+                self.expect(kind, words, swept.run, POSES, **named)
+        self.expect(ValueError, "next_vertices: no body is deformable", self.collider(motion="linear", contact_rule="none").run, next_vertices=[points])
+        self.expect(ValueError, "choose decision=exact or contact_rule=none", self.collider, motion="linear")
+        self.assertEqual(swept.digest(POSES, next_poses=POSES).count, self.collider(deformable=[1]).count(POSES), "goes on after bad input")
+
     def test_answers_that_were_not_stored(self):
         counted = self.collider(output="count").run(POSES)
         self.assertEqual(counted.count, self.collider().count(POSES))

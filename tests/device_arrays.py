@@ -230,6 +230,10 @@ class Arrays(Case):
         self.expect_followed(soft, second, 1, lambda: soft.run(ByInterface(array, stream=second), rows))
         self.expect_followed(soft, first, 1, lambda: soft.run(vertices=rows))
         self.expect_followed(soft, None, 1, lambda: soft.run(ByInterface(array, stream=1), rows))
+        swept = self.collider(deformable=True, motion="linear", contact_rule="none")
+        later = [ByInterface(points + 1, stream=first) for points, _ in self.parts]
+        read = [address for frame in (rows, later) for address in (0, *(array.array.__array_interface__["data"][0] for array in frame))]
+        self.expect_followed(swept, first, 1, lambda: self.expect_read(swept, lambda: swept.run(vertices=rows, next_vertices=later), *read))
         own = self.collider(stream=first)
         self.expect_followed(own, first, 0, lambda: own.run(ByInterface(array, stream=first)))
 

@@ -2,7 +2,10 @@
 #pragma once
 
 #include "algorithms/device_frame.h"
+#include "base/error.h"
 #include "scenes/scene.h"
+
+#include <string>
 
 namespace tandem {
 
@@ -23,6 +26,17 @@ struct DeviceFrameInput {
     const DeviceFrame& frame;
     const DeviceFrame* next = nullptr;
 };
+
+/// The result of `work` on a frame's successor. Its InputError names the successor, because the frame itself
+/// has the same errors.
+template<class Work>
+decltype(auto) of_successor(const Work& work) {
+    try {
+        return work();
+    } catch (const InputError& error) {
+        throw InputError(std::string("successor: ") + error.what());
+    }
+}
 
 /// Throws InputError if `next` lacks bodies or vertices of `frame`.
 void check_successor(const Frame& frame, const Frame& next);

@@ -85,7 +85,8 @@ Frame downloaded(Device& device, const Scene& scene, const DeviceFrame& frame) {
 void refuse_flawed(Device& device, const Scene& scene, const DeviceFrameInput& input, Precision precision,
                    std::uint64_t flawed) {
     check_range(scene, downloaded(device, scene, input.frame), precision);
-    if (input.next != nullptr) check_range(scene, downloaded(device, scene, *input.next), precision);
+    if (input.next != nullptr)
+        of_successor([&] { check_range(scene, downloaded(device, scene, *input.next), precision); });
     throw InputError(
         fmt::format("{} rows of the frame were out of range on {} and have changed since; do not "
                     "write them before run() returns",

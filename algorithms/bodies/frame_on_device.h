@@ -13,8 +13,8 @@ void check_fits(const Scene& scene, const DeviceFrame& frame);
 /// Downloads the frame; waits. Throws InputError for the first row without a rotation.
 Frame downloaded(Device& device, const Scene& scene, const DeviceFrame& frame);
 
-/// Throws the InputError that check_range throws for the same frame in the host's memory, or for its
-/// successor. `flawed`: number of rows out of range, at least 1.
+/// Throws the InputError that check_range throws for the same frame in the host's memory, or of_successor for
+/// its successor. `flawed`: number of rows out of range, at least 1.
 [[noreturn]] void refuse_flawed(Device& device, const Scene& scene, const DeviceFrameInput& input,
                                 Precision precision, std::uint64_t flawed);
 

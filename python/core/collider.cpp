@@ -2,13 +2,13 @@
 #include "python/core/collider.h"
 
 #include "algorithms/bodies/range.h"
+#include "algorithms/parameters/table.h"
 #include "backends/cuda/cuda_device.h"
 #include "base/error.h"
 
 #include <algorithm>
 #include <charconv>
 #include <chrono>
-#include <cmath>
 #include <fmt/format.h>
 
 namespace tandem::python {
@@ -16,16 +16,6 @@ namespace tandem::python {
 namespace {
 
 constexpr double seconds_of_choosing = 2; ///< in the first frame, where tune was not called
-
-/// Rigid bodies have the identity as their pose, deformable bodies the vertices of their mesh.
-Frame rest_frame(const Scene& scene) {
-    Frame frame{std::vector<Pose>(scene.bodies.size()),
-                std::vector<std::vector<Eigen::Vector3d>>(scene.bodies.size())};
-    for (std::size_t body = 0; body < scene.bodies.size(); ++body)
-        if (scene.bodies[body].deformable)
-            frame.deformed[body] = scene.meshes[scene.bodies[body].mesh].vertices;
-    return frame;
-}
 
 Scene scene_of(std::vector<Mesh> meshes, const ColliderOptions& options) {
     Scene scene;
@@ -77,7 +67,6 @@ Collider::Collider(std::vector<Mesh> meshes, const ColliderOptions& options) : a
     open_devices(options);
     scene_ = scene_of(std::move(meshes), options);
     scene_.frame = [this](std::size_t) { return rest_frame(scene_); };
-    frame_ = rest_frame(scene_);
     prepare(options);
 }
 
@@ -112,29 +101,31 @@ void Collider::prepare(const ColliderOptions& options) {
         settings = resolve(traversal->parameters(), chosen.values, options.settings, traversal->name());
     }
     precision_ = geometry_of(settings).precision;
-    limit_ = largest_coordinate(precision_);
-    check_range(scene_, frame_, precision_);
+    motion_ = settings[parameters::motion];
+    host_input_.emplace(scene_, precision_);
+    check_range(scene_, rest_frame(scene_), precision_);
     if (traversal != nullptr) session_ = traversal->prepare(devices_, scene_, settings);
 }
 
-template<class AnyFrame>
-std::pair<FrameResult, double> Collider::run_frame(const AnyFrame& frame) {
-    if (!session_) choose_for(frame, seconds_of_choosing);
+template<class Frames>
+std::pair<FrameResult, double> Collider::run_frames(const Frames& frames) {
+    if (!session_) choose_for(frames, seconds_of_choosing);
     const auto begin = std::chrono::steady_clock::now();
-    auto result = session_->run(frame);
+    auto result = session_->run(frames);
     return {std::move(result),
             std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()};
 }
 
 std::pair<FrameResult, double> Collider::run(const Input& input) {
     const std::lock_guard lock(mutex_);
-    return input.on_device ? run_frame(device_frame(input)) : run_frame(host_frame(input));
+    check(input);
+    return input.on_device ? run_frames(device_frames(input)) : run_frames(host_frames(input));
 }
 
-template<class AnyFrame>
-std::vector<Trial> Collider::choose_for(const AnyFrame& frame, double seconds) {
+template<class Frames>
+std::vector<Trial> Collider::choose_for(const Frames& frames, double seconds) {
     auto chosen = choose(
-        candidates_, scene_, [&](Session& session) { return session.run(frame); }, seconds);
+        candidates_, scene_, [&](Session& session) { return session.run(frames); }, seconds);
     session_ = std::move(chosen.session);
     algorithm_ = chosen.algorithm->name();
     return std::move(chosen.trials);
@@ -145,8 +136,9 @@ std::vector<Trial> Collider::tune(const Input& input, double seconds) {
     if (candidates_.empty())
         throw InputError(
             fmt::format("tune: algorithm {} was named; make the collider with algorithm=auto", algorithm_));
-    return input.on_device ? choose_for(device_frame(input), seconds)
-                           : choose_for(host_frame(input), seconds);
+    check(input);
+    return input.on_device ? choose_for(device_frames(input), seconds)
+                           : choose_for(host_frames(input), seconds);
 }
 
 void Collider::reset() {
@@ -169,60 +161,26 @@ std::vector<std::uintptr_t> Collider::addresses() {
     return device_input_ ? device_input_->addresses() : std::vector<std::uintptr_t>{};
 }
 
-/// The copy counts coordinates that are out of range. Only then the library's slower check runs, which throws
-/// the error message.
-const Frame& Collider::host_frame(const Input& input) {
-    out_of_range_ = 0;
-    if (input.poses)
-        set_poses(*input.poses);
-    else
-        std::ranges::fill(frame_.poses, Pose{});
-    for (std::size_t body = 0; body < bodies(); ++body) {
-        if (!scene_.bodies[body].deformable) continue;
-        if (body < input.vertices.size() && input.vertices[body])
-            set_vertices(body, *input.vertices[body]);
-        else
-            frame_.deformed[body] = scene_.meshes[scene_.bodies[body].mesh].vertices;
-    }
-    if (out_of_range_ > 0) check_range(scene_, frame_, precision_);
-    return frame_;
+void Collider::check(const Input& input) const {
+    if (motion_ == Motion::linear && !input.next)
+        throw InputError("setting motion=linear needs the frame's successor; give next_poses or "
+                         "next_vertices");
+    if (motion_ == Motion::none && input.next)
+        throw InputError("next_poses and next_vertices are for setting motion=linear; make the collider with "
+                         "motion=linear, or leave them out");
+    check_rows(scene_, input);
 }
 
-const DeviceFrame& Collider::device_frame(const Input& input) {
-    if (!device_input_) device_input_ = std::make_unique<DeviceInput>(*devices_.front(), scene_);
-    return device_input_->frame(input.poses, input.vertices);
+FrameInput Collider::host_frames(const Input& input) {
+    const auto& frame = host_input_->frame(input.frame);
+    if (!input.next) return frame;
+    if (!next_host_input_) next_host_input_.emplace(scene_, precision_);
+    return {frame, of_successor([&] { return &next_host_input_->frame(*input.next); })};
 }
 
-void Collider::set_poses(const GivenRows& poses) {
-    if (poses.rows != bodies())
-        throw InputError(
-            fmt::format("poses: {} rows for {} bodies; give each body its row", poses.rows, bodies()));
-    for (std::size_t body = 0; body < bodies(); ++body) {
-        if (scene_.bodies[body].deformable) {
-            frame_.poses[body] = {};
-            continue;
-        }
-        frame_.poses[body] = pose_of_row(static_cast<const double*>(poses.data) + 7 * body, body);
-        for (const double x : frame_.poses[body].translation) out_of_range_ += !(std::abs(x) <= limit_);
-    }
-}
-
-void Collider::set_vertices(std::size_t body, const GivenRows& vertices) {
-    const auto count = scene_.meshes[scene_.bodies[body].mesh].vertices.size();
-    if (vertices.rows != count)
-        throw InputError(fmt::format("vertices: {} rows for body {}, whose mesh has {} vertices",
-                                     vertices.rows, body, count));
-    auto& points = frame_.deformed[body];
-    points.resize(count);
-    static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double));
-    const auto* const from = static_cast<const double*>(vertices.data);
-    auto* const to = reinterpret_cast<double*>(points.data());
-    std::size_t out_of_range = 0; // a local variable, so that the loop is vectorised
-    for (std::size_t i = 0; i < 3 * count; ++i) {
-        out_of_range += !(std::abs(from[i]) <= limit_);
-        to[i] = from[i];
-    }
-    out_of_range_ += out_of_range;
+DeviceFrameInput Collider::device_frames(const Input& input) {
+    if (!device_input_) device_input_.emplace(*devices_.front(), scene_);
+    return device_input_->frames(input);
 }
 
 } // namespace tandem::python

@@ -5,6 +5,7 @@
 #include "harness/plans/device_groups.h"
 #include "python/core/choosing.h"
 #include "python/core/device_input.h"
+#include "python/core/host_input.h"
 
 #include <algorithm>
 #include <memory>
@@ -24,22 +25,14 @@ struct ColliderOptions {
     std::optional<std::uintptr_t> stream; ///< a CUstream of the device, a CUDA one; 0: default stream
 };
 
-/// Arrays of one frame. Without poses every body has the identity. Deformable bodies without vertices have
-/// those of their mesh.
-struct Input {
-    std::optional<GivenRows> poses;
-    std::vector<std::optional<GivenRows>> vertices; ///< one per body, or empty
-    bool on_device = false; ///< whether kernels read some of the arrays in memory of the collider's device
-};
-
 /// A scene of meshes on its own devices, prepared for one algorithm. One thread at a time uses it.
 class Collider {
 public:
     /// Throws InputError or DeviceError.
     Collider(std::vector<Mesh> meshes, const ColliderOptions& options);
 
-    /// Finds the pairs of a frame. Returns the result and the seconds of the frame itself, measured as the
-    /// program does. Throws InputError or DeviceError.
+    /// Finds the pairs of a frame, with motion=linear up to its successor. Returns the result and the seconds
+    /// of the frame itself, measured as the program does. Throws InputError or DeviceError.
     std::pair<FrameResult, double> run(const Input& input);
     /// Algorithm auto: times the candidates on that frame and selects the fastest for later runs. Throws
     /// InputError for another algorithm.
@@ -68,15 +61,16 @@ public:
 private:
     void open_devices(const ColliderOptions& options);
     void prepare(const ColliderOptions& options);
-    /// The input as a checked frame. The next call overwrites it.
-    const Frame& host_frame(const Input& input);
-    const DeviceFrame& device_frame(const Input& input);
-    template<class AnyFrame>
-    std::pair<FrameResult, double> run_frame(const AnyFrame& frame);
-    template<class AnyFrame>
-    std::vector<Trial> choose_for(const AnyFrame& frame, double seconds);
-    void set_poses(const GivenRows& poses);
-    void set_vertices(std::size_t body, const GivenRows& vertices);
+    /// Throws InputError for a wrong number of rows, and unless there is a successor exactly with
+    /// motion=linear.
+    void check(const Input& input) const;
+    /// A checked input as frames. The next call overwrites them.
+    FrameInput host_frames(const Input& input);
+    DeviceFrameInput device_frames(const Input& input);
+    template<class Frames>
+    std::pair<FrameResult, double> run_frames(const Frames& frames);
+    template<class Frames>
+    std::vector<Trial> choose_for(const Frames& frames, double seconds);
 
     nanobind::object stream_owner_;
     std::vector<BackendReport> backends_; ///< declared first, so that devices outlive their buffers
@@ -85,10 +79,9 @@ private:
     std::string algorithm_;
     std::vector<Cell> candidates_; ///< candidates of algorithm auto
     Precision precision_ = Precision::fp32;
-    double limit_ = 0;             ///< largest valid coordinate
-    Frame frame_;                  ///< its memory is reused for each frame
-    std::size_t out_of_range_ = 0; ///< number of coordinates of frame_ beyond limit_
-    std::unique_ptr<DeviceInput> device_input_;
+    Motion motion_ = Motion::none;
+    std::optional<HostInput> host_input_, next_host_input_; ///< of frames, and of their successors
+    std::optional<DeviceInput> device_input_;
     std::unique_ptr<Session> session_; ///< null until an algorithm is chosen
     std::mutex mutex_;
 };

@@ -49,8 +49,9 @@ std::unique_ptr<Answer> run(const std::shared_ptr<Collider>& collider, const Inp
 
 /// One tuple (algorithm, changed settings, seconds) per trial, the fastest first. None where input_of returns
 /// none.
-std::optional<nb::list> tune(Collider& collider, nb::handle poses, nb::handle vertices, double seconds) {
-    const auto input = input_of(collider, poses, vertices);
+std::optional<nb::list> tune(Collider& collider, nb::handle poses, nb::handle vertices, double seconds,
+                             nb::handle next_poses, nb::handle next_vertices) {
+    const auto input = input_of(collider, {poses, vertices}, {next_poses, next_vertices});
     if (!input) return std::nullopt;
     const auto trials = [&] {
         const nb::gil_scoped_release released;
@@ -67,20 +68,7 @@ std::uintptr_t queue(const Collider& collider) {
     return reinterpret_cast<std::uintptr_t>(collider.devices().front()->queue());
 }
 
-} // namespace
-
-void bind_collider(nb::module_& module) {
-    module.def("algorithms", &algorithm_names, "Names of the algorithms that Collider accepts besides auto.");
-    const auto released = nb::call_guard<nb::gil_scoped_release>();
-    const auto run_given = [](const std::shared_ptr<Collider>& self, nb::handle poses,
-                              nb::handle vertices) -> std::unique_ptr<Answer> {
-        const auto input = input_of(*self, poses, vertices);
-        return input ? run(self, *input) : nullptr;
-    };
-    const auto run_device_input = [](const std::shared_ptr<Collider>& self, nb::handle poses,
-                                     const nb::list& vertices) {
-        return run(self, device_input(*self, poses, vertices));
-    };
+void bind_options(nb::module_& module) {
     nb::class_<ColliderOptions>(module, "ColliderOptions",
                                 "bodies, deformable, groups: one entry per body, of groups the bits of its "
                                 "groups and of those it meets. stream: an address.")
@@ -90,19 +78,42 @@ void bind_collider(nb::module_& module) {
              nb::arg("bodies"), nb::arg("deformable"), nb::arg("algorithm"), nb::arg("preset"),
              nb::arg("device"), nb::arg("settings"), nb::arg("groups"), nb::arg("never_meet"),
              nb::arg("stream").none());
+}
+
+} // namespace
+
+void bind_collider(nb::module_& module) {
+    module.def("algorithms", &algorithm_names, "Names of the algorithms that Collider accepts besides auto.");
+    bind_options(module);
+    const auto released = nb::call_guard<nb::gil_scoped_release>();
+    const auto run_given = [](const std::shared_ptr<Collider>& self, nb::handle poses, nb::handle vertices,
+                              nb::handle next_poses, nb::handle next_vertices) -> std::unique_ptr<Answer> {
+        const auto input = input_of(*self, {poses, vertices}, {next_poses, next_vertices});
+        return input ? run(self, *input) : nullptr;
+    };
+    const auto run_device_input = [](const std::shared_ptr<Collider>& self, nb::handle poses,
+                                     const nb::list& vertices, nb::handle next_poses,
+                                     const std::optional<nb::list>& next_vertices) {
+        const nb::object next = next_vertices ? nb::object(*next_vertices) : nb::none();
+        return run(self, device_input(*self, {poses, vertices}, {next_poses, next}));
+    };
     nb::class_<Collider>(module, "Collider", "Implementation of tandem.Collider, which checks its input.")
         .def(nb::new_(&make), nb::arg("meshes"), nb::arg("options"), nb::arg("owner").none())
-        .def("run", run_given, nb::arg("poses").none(), nb::arg("vertices").none(),
-             nb::sig("def run(self, poses: object | None, vertices: object | None) -> Answer | None"),
-             "Runs a frame. vertices: a list with one array per deformable body, or {number: array}. Returns "
-             "None "
-             "for any other container.")
+        .def(
+            "run", run_given, nb::arg("poses").none(), nb::arg("vertices").none(),
+            nb::arg("next_poses").none(), nb::arg("next_vertices").none(),
+            nb::sig("def run(self, poses: object | None, vertices: object | None, next_poses: object | None, "
+                    "next_vertices: object | None) -> Answer | None"),
+            "Runs a frame. vertices, next_vertices: a list with one array per deformable body, or "
+            "{number: array}. Returns None for any other container.")
         .def("run_device_input", run_device_input, nb::arg("poses").none(), nb::arg("vertices"),
+             nb::arg("next_poses") = nb::none(), nb::arg("next_vertices") = nb::none(),
              "Runs a frame whose arrays are all in memory of the device; for device host, in host memory. "
-             "vertices has one entry per body.")
+             "vertices and next_vertices have one entry per body.")
         .def("tune", &tune, nb::arg("poses").none(), nb::arg("vertices").none(), nb::arg("seconds"),
-             nb::sig("def tune(self, poses: object | None, vertices: object | None, seconds: float) -> list "
-                     "| None"))
+             nb::arg("next_poses").none(), nb::arg("next_vertices").none(),
+             nb::sig("def tune(self, poses: object | None, vertices: object | None, seconds: float, "
+                     "next_poses: object | None, next_vertices: object | None) -> list | None"))
         .def("reset", &Collider::reset, released)
         .def_prop_ro("algorithm", &Collider::algorithm, released)
         .def_prop_ro("settings", &Collider::setting_texts, released)
@@ -111,7 +122,7 @@ void bind_collider(nb::module_& module) {
         .def_prop_ro(
             "addresses", &Collider::addresses, released,
             "Addresses from which kernels read the last frame that was in memory of the device: poses "
-            "(0 for none), then vertices of each deformable body.");
+            "(0 for none), then vertices of each deformable body. Those of its successor follow.");
 }
 
 } // namespace tandem::python

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "python/core/device_input.h"
 
-#include "base/error.h"
-
-#include <fmt/format.h>
-
 namespace tandem::python {
 
 namespace {
@@ -38,8 +34,7 @@ DeviceRows DeviceInput::rows_of(const GivenRows& given, std::size_t columns, Upl
     return {adopted(given.data, bytes), given.precision};
 }
 
-DeviceRows DeviceInput::at_rest(std::size_t body) {
-    auto& upload = uploads_[body];
+DeviceRows DeviceInput::at_rest(std::size_t body, Upload& upload) {
     const auto& vertices = scene_.meshes[scene_.bodies[body].mesh].vertices;
     const auto bytes = vertices.size() * sizeof(vertices.front());
     if (!upload.at_rest) uploaded(vertices.data(), bytes, Precision::fp64, upload);
@@ -47,34 +42,42 @@ DeviceRows DeviceInput::at_rest(std::size_t body) {
     return {upload.buffer, Precision::fp64};
 }
 
-const DeviceFrame& DeviceInput::frame(const std::optional<GivenRows>& poses,
-                                      const std::vector<std::optional<GivenRows>>& vertices) {
+void DeviceInput::read(const FrameArrays& arrays, Rows& rows) {
     const auto bodies = scene_.bodies.size();
-    frame_.deformed.resize(bodies);
-    followed_.reset();
-    if (poses && poses->rows != bodies)
-        throw InputError(
-            fmt::format("poses: {} rows for {} bodies; give each body its row", poses->rows, bodies));
-    frame_.poses = poses ? rows_of(*poses, pose_numbers, uploads_.back()) : DeviceRows{};
+    rows.uploads.resize(bodies + 1);
+    rows.frame.deformed.resize(bodies);
+    rows.frame.poses =
+        arrays.poses ? rows_of(*arrays.poses, pose_numbers, rows.uploads.back()) : DeviceRows{};
     for (std::size_t body = 0; body < bodies; ++body) {
         if (!scene_.bodies[body].deformable) continue;
-        const auto count = scene_.meshes[scene_.bodies[body].mesh].vertices.size();
-        const bool given = body < vertices.size() && vertices[body];
-        if (given && vertices[body]->rows != count)
-            throw InputError(fmt::format("vertices: {} rows for body {}, whose mesh has {} vertices",
-                                         vertices[body]->rows, body, count));
-        frame_.deformed[body] = given ? rows_of(*vertices[body], coordinates, uploads_[body]) : at_rest(body);
+        const auto* const given = arrays.vertices_of(body);
+        auto& upload = rows.uploads[body];
+        rows.frame.deformed[body] =
+            given != nullptr ? rows_of(*given, coordinates, upload) : at_rest(body, upload);
     }
-    return frame_;
+}
+
+DeviceFrameInput DeviceInput::frames(const Input& input) {
+    followed_.reset();
+    has_next_ = input.next.has_value();
+    read(input.frame, frame_);
+    if (!has_next_) return frame_.frame;
+    read(*input.next, next_);
+    return {frame_.frame, &next_.frame};
 }
 
 std::vector<std::uintptr_t> DeviceInput::addresses() const {
     const auto address = [](const DeviceRows& rows) {
         return reinterpret_cast<std::uintptr_t>(rows.buffer.native());
     };
-    std::vector<std::uintptr_t> all{address(frame_.poses)};
-    for (const auto& rows : frame_.deformed)
-        if (rows.buffer) all.push_back(address(rows));
+    std::vector<std::uintptr_t> all;
+    const auto add = [&](const DeviceFrame& frame) {
+        all.push_back(address(frame.poses));
+        for (const auto& rows : frame.deformed)
+            if (rows.buffer) all.push_back(address(rows));
+    };
+    add(frame_.frame);
+    if (has_next_) add(next_.frame);
     return all;
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "python/core/given_rows.h"
+#include "algorithms/traversal.h"
+#include "python/core/frame_arrays.h"
 
 #include <map>
 #include <vector>
@@ -13,15 +14,13 @@ namespace tandem::python {
 class DeviceInput {
 public:
     /// Both must outlive it.
-    DeviceInput(Device& device, const Scene& scene)
-        : device_(device), scene_(scene), uploads_(scene.bodies.size() + 1) {}
+    DeviceInput(Device& device, const Scene& scene) : device_(device), scene_(scene) {}
 
-    /// Without poses every body has the identity. Deformable bodies without vertices have those of their
-    /// mesh. Throws InputError for a wrong number of rows.
-    const DeviceFrame& frame(const std::optional<GivenRows>& poses,
-                             const std::vector<std::optional<GivenRows>>& vertices);
+    /// The frame of arrays that pass check_rows, and its successor if there is one. The next call overwrites
+    /// them.
+    DeviceFrameInput frames(const Input& input);
     /// Addresses from which kernels read the last frame: poses (0 for none), then the vertices of each
-    /// deformable body.
+    /// deformable body. Those of its successor follow.
     std::vector<std::uintptr_t> addresses() const;
 
 private:
@@ -30,21 +29,27 @@ private:
         Buffer buffer;
         bool at_rest = false; ///< whether they are the vertices of the mesh
     };
+    /// A frame, and the memory of its rows from the host.
+    struct Rows {
+        DeviceFrame frame;
+        std::vector<Upload> uploads; ///< vertices of each body, then poses
+    };
 
+    void read(const FrameArrays& arrays, Rows& rows);
     DeviceRows rows_of(const GivenRows& given, std::size_t columns, Upload& upload);
     DeviceRows uploaded(const void* data, std::size_t bytes, Precision precision, Upload& upload);
-    DeviceRows at_rest(std::size_t body);
+    DeviceRows at_rest(std::size_t body, Upload& upload);
     Buffer adopted(void* data, std::size_t bytes);
 
     Device& device_;
     const Scene& scene_;
-    std::vector<Upload> uploads_; ///< vertices of each body, then poses
     /// Adopted arrays by address and bytes. They are kept, because releasing one discards the device's data
     /// on commands of earlier frames.
     std::map<std::pair<void*, std::size_t>, Buffer> adopted_;
-    DeviceFrame frame_;
+    Rows frame_, next_;
+    bool has_next_ = false; ///< whether the last frame had a successor
     std::optional<void*>
-        followed_; ///< last queue followed in this frame: arrays of one library share a stream
+        followed_; ///< last queue followed in this call: arrays of one library share a stream
 };
 
 } // namespace tandem::python

@@ -258,7 +258,9 @@ bool is_numpy_array(nb::handle object) {
 
 } // namespace
 
-std::string WantedRows::name() const { return body ? fmt::format("vertices of body {}", *body) : "poses"; }
+std::string WantedRows::name() const {
+    return (of_next ? "next_" : "") + (body ? fmt::format("vertices of body {}", *body) : "poses");
+}
 
 std::optional<std::pair<int, int>> dlpack_device(const Device& device) {
     const auto& id = device.info().id;

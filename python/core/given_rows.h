@@ -27,6 +27,7 @@ struct WantedRows {
     const DeviceGroup& devices;
     std::size_t columns;
     nanobind::handle& last_gpu_type;   ///< type of the last GPU array of this call that came by DLPack
+    bool of_next = false;              ///< whether they are of the frame's successor
     std::optional<std::size_t> body{}; ///< the body whose vertices they are; none: they are poses
 
     std::string name() const;

@@ -44,8 +44,14 @@ std::optional<Entries> entries_of(const Collider& collider, nb::handle vertices)
     return all ? std::optional(std::move(entries)) : std::nullopt;
 }
 
+/// The arguments for one frame, with its entries.
+struct FrameObjects {
+    nb::handle poses;
+    Entries vertices;
+};
+
 template<class ReadRows>
-Input make_input(const Collider& collider, nb::handle poses, const Entries& entries,
+Input make_input(const Collider& collider, const FrameObjects& frame, const std::optional<FrameObjects>& next,
                  const ReadRows& read_rows) {
     Input input;
     nb::handle last_gpu_type;
@@ -54,25 +60,44 @@ Input make_input(const Collider& collider, nb::handle poses, const Entries& entr
         input.on_device |= given.on_device;
         return given;
     };
-    if (!poses.is_none()) input.poses = rows(poses, {collider.devices(), 7, last_gpu_type});
-    input.vertices.resize(entries.size());
-    for (std::size_t body = 0; body < entries.size(); ++body)
-        if (entries[body] && !entries[body].is_none())
-            input.vertices[body] = rows(entries[body], {collider.devices(), 3, last_gpu_type, body});
+    const auto arrays = [&](const FrameObjects& objects, bool of_next) {
+        FrameArrays result;
+        if (!objects.poses.is_none())
+            result.poses = rows(objects.poses, {collider.devices(), 7, last_gpu_type, of_next});
+        result.vertices.resize(objects.vertices.size());
+        for (std::size_t body = 0; body < objects.vertices.size(); ++body)
+            if (const auto& array = objects.vertices[body]; array && !array.is_none())
+                result.vertices[body] = rows(array, {collider.devices(), 3, last_gpu_type, of_next, body});
+        return result;
+    };
+    input.frame = arrays(frame, false);
+    if (next) input.next = arrays(*next, true);
     return input;
 }
 
+bool is_given(const FrameArguments& frame) { return !frame.poses.is_none() || !frame.vertices.is_none(); }
+
 } // namespace
 
-std::optional<Input> input_of(const Collider& collider, nb::handle poses, nb::handle vertices) {
-    const auto entries = entries_of(collider, vertices);
-    return entries ? std::optional(make_input(collider, poses, *entries, given_rows)) : std::nullopt;
+std::optional<Input> input_of(const Collider& collider, const FrameArguments& frame,
+                              const FrameArguments& next) {
+    auto entries = entries_of(collider, frame.vertices), next_entries = entries_of(collider, next.vertices);
+    if (!entries || !next_entries) return std::nullopt;
+    std::optional<FrameObjects> successor;
+    if (is_given(next)) successor = {next.poses, std::move(*next_entries)};
+    return make_input(collider, {frame.poses, std::move(*entries)}, successor, given_rows);
 }
 
-Input device_input(const Collider& collider, nb::handle poses, const nb::list& vertices) {
-    Entries entries;
-    for (const auto rows : vertices) entries.push_back(nb::borrow(rows));
-    auto input = make_input(collider, poses, entries, device_rows);
+Input device_input(const Collider& collider, const FrameArguments& frame, const FrameArguments& next) {
+    const auto objects = [](const FrameArguments& arguments) {
+        FrameObjects result{arguments.poses, {}};
+        if (!arguments.vertices.is_none())
+            for (const auto rows : nb::borrow<nb::list>(arguments.vertices))
+                result.vertices.push_back(nb::borrow(rows));
+        return result;
+    };
+    auto input = make_input(collider, objects(frame),
+                            is_given(next) ? std::optional(objects(next)) : std::nullopt, device_rows);
     input.on_device = true;
     return input;
 }

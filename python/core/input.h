@@ -5,12 +5,18 @@
 
 namespace tandem::python {
 
-/// `poses`: None or an array; `vertices`: None, a list with one array per deformable body, or {body: array}.
-/// None for another `vertices`, before any array is read: the Python caller reports the error. Throws as
-/// given_rows does.
-std::optional<Input> input_of(const Collider& collider, nanobind::handle poses, nanobind::handle vertices);
+/// Arguments of a call for one frame. `poses`: None or an array; `vertices`: None, a list with one array per
+/// deformable body, or {body: array}.
+struct FrameArguments {
+    nanobind::handle poses, vertices;
+};
 
-/// The same by device_rows; `vertices` has one entry per body.
-Input device_input(const Collider& collider, nanobind::handle poses, const nanobind::list& vertices);
+/// `next`: the frame's successor; there is none if both of its arguments are None. None for another
+/// `vertices`, before any array is read: the Python caller reports the error. Throws as given_rows does.
+std::optional<Input> input_of(const Collider& collider, const FrameArguments& frame,
+                              const FrameArguments& next);
+
+/// The same by device_rows; `vertices` are None or a list with one entry per body.
+Input device_input(const Collider& collider, const FrameArguments& frame, const FrameArguments& next);
 
 } // namespace tandem::python

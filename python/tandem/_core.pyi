@@ -138,17 +138,17 @@ class Collider:
 
     def __init__(self, meshes: Sequence[Mesh], options: ColliderOptions, owner: object | None) -> None: ...
 
-    def run(self, poses: object | None, vertices: object | None) -> Answer | None:
+    def run(self, poses: object | None, vertices: object | None, next_poses: object | None, next_vertices: object | None) -> Answer | None:
         """
-        Runs a frame. vertices: a list with one array per deformable body, or {number: array}. Returns None for any other container.
-        """
-
-    def run_device_input(self, poses: object | None, vertices: list) -> Answer:
-        """
-        Runs a frame whose arrays are all in memory of the device; for device host, in host memory. vertices has one entry per body.
+        Runs a frame. vertices, next_vertices: a list with one array per deformable body, or {number: array}. Returns None for any other container.
         """
 
-    def tune(self, poses: object | None, vertices: object | None, seconds: float) -> list | None: ...
+    def run_device_input(self, poses: object | None, vertices: list, next_poses: object | None = None, next_vertices: list | None = None) -> Answer:
+        """
+        Runs a frame whose arrays are all in memory of the device; for device host, in host memory. vertices and next_vertices have one entry per body.
+        """
+
+    def tune(self, poses: object | None, vertices: object | None, seconds: float, next_poses: object | None, next_vertices: object | None) -> list | None: ...
 
     def reset(self) -> None: ...
 
@@ -167,5 +167,5 @@ class Collider:
     @property
     def addresses(self) -> list[int]:
         """
-        Addresses from which kernels read the last frame that was in memory of the device: poses (0 for none), then vertices of each deformable body.
+        Addresses from which kernels read the last frame that was in memory of the device: poses (0 for none), then vertices of each deformable body. Those of its successor follow.
         """

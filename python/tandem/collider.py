@@ -122,7 +122,8 @@ class Collider:
         cupy.cuda.get_current_stream() or torch.cuda.current_stream(), which the collider keeps alive, or the address of a stream that must
         outlive the collider. None: the collider makes its own stream.
     preset, settings: the same as --preset and --set of the program, with its defaults (`tandem algorithms NAME` lists them): k=8,
-        precision="double", output="count".
+        precision="double", output="count". motion="linear" finds pairs between a frame and its successor (run()); it needs
+        decision="exact" or contact_rule="none".
 
     Raises ValueError or TypeError for invalid arguments, tandem.DeviceError if a device fails; messages are one line. Calls release the
     interpreter's lock. Calls of one collider and of its answers wait for each other.
@@ -153,47 +154,54 @@ class Collider:
         options = _core.ColliderOptions(mesh_of_body, flags, algorithm, preset, device, texts, filters, apart, address)
         self._core = _core.Collider(all_meshes, options, stream)
 
-    def run(self, poses: Any = None, vertices: Any = None) -> Answer:
+    def run(self, poses: Any = None, vertices: Any = None, *, next_poses: Any = None, next_vertices: Any = None) -> Answer:
         """Finds the candidate pairs and contacts of a frame.
 
         poses: (bodies, 7) numbers, rows tx ty tz qw qx qy qz: x_world = R(q) x_mesh + t, in the meshes' unit; q is normalised. None: the
             identity for all bodies. Rows of deformable bodies are ignored.
         vertices: world coordinates of deformable bodies: a list with one (n, 3) array for each of them, in their order, or {body: array}.
             None: the vertices of their meshes.
+        next_poses, next_vertices: the frame's successor, which motion="linear" needs: at least one of them, in the forms of poses and vertices.
+            Candidate pairs are then those that could meet while the bodies move from the frame to its successor: vertices of deformable
+            bodies on straight lines, rigid bodies with straight translation and the shorter rotation at constant speed. Contacts are those
+            of the frame. What is left out has the same default as in the frame, the identity or the vertices of the mesh, not the frame's own
+            poses or vertices.
 
         Arrays in host memory are NumPy arrays or objects with __dlpack__. Contiguous float64 arrays are uploaded without another copy. Arrays
         on the collider's GPU (CuPy, PyTorch, JAX; __dlpack__ or __cuda_array_interface__) are contiguous float64 or float32. Kernels read
         them in place, after the work that their library has enqueued and before this call returns. Both kinds may be mixed and give the same
         answer, bit for bit. With arrays on the GPU, body pairs are found on the device, whatever setting broad is. Raises ValueError or
         TypeError for wrong shapes, types and numbers that are not finite, tandem.DeviceError otherwise."""
-        answer = self._core.run(poses, vertices)
-        return Answer(self._core.run(poses, self._by_body(vertices)) if answer is None else answer)
+        answer = self._core.run(poses, vertices, next_poses, next_vertices)
+        if answer is None:
+            answer = self._core.run(poses, self._by_body(vertices, "vertices"), next_poses, self._by_body(next_vertices, "next_vertices"))
+        return Answer(answer)
 
-    def tune(self, poses: Any = None, vertices: Any = None, seconds: float = 2.0) -> list[Trial]:
+    def tune(self, poses: Any = None, vertices: Any = None, seconds: float = 2.0, *, next_poses: Any = None, next_vertices: Any = None) -> list[Trial]:
         """With algorithm="auto": times the candidates on a frame for about `seconds` of frames, and selects the fastest for later runs. Compilation
-        may take six times as long. `poses` and `vertices` are those of run(). Afterwards `algorithm` and `settings` are those selected. Returns
+        may take six times as long. The arrays are those of run(). Afterwards `algorithm` and `settings` are those selected. Returns
         the timed candidates, the fastest first. If tune() is not called, the first run() selects. Raises ValueError if the collider has another
         algorithm, or all candidates fail."""
-        trials = self._core.tune(poses, vertices, seconds)
+        trials = self._core.tune(poses, vertices, seconds, next_poses, next_vertices)
         if trials is None:
-            trials = self._core.tune(poses, self._by_body(vertices), seconds)
+            trials = self._core.tune(poses, self._by_body(vertices, "vertices"), seconds, next_poses, self._by_body(next_vertices, "next_vertices"))
         return [Trial(*trial) for trial in trials]
 
-    def pairs(self, poses: Any = None, vertices: Any = None, on_device: bool = False) -> Any:
-        """run(poses, vertices).pairs(on_device): (n, 4) int32, sorted."""
-        return self.run(poses, vertices).pairs(on_device)
+    def pairs(self, poses: Any = None, vertices: Any = None, on_device: bool = False, *, next_poses: Any = None, next_vertices: Any = None) -> Any:
+        """run(...).pairs(on_device): (n, 4) int32, sorted."""
+        return self.run(poses, vertices, next_poses=next_poses, next_vertices=next_vertices).pairs(on_device)
 
-    def contacts(self, poses: Any = None, vertices: Any = None) -> Contacts:
-        """run(poses, vertices).contacts()."""
-        return self.run(poses, vertices).contacts()
+    def contacts(self, poses: Any = None, vertices: Any = None, *, next_poses: Any = None, next_vertices: Any = None) -> Contacts:
+        """run(...).contacts()."""
+        return self.run(poses, vertices, next_poses=next_poses, next_vertices=next_vertices).contacts()
 
-    def count(self, poses: Any = None, vertices: Any = None) -> int:
-        """run(poses, vertices).count: the number of candidate pairs. With output="count" the pairs are not stored."""
-        return self.run(poses, vertices).count
+    def count(self, poses: Any = None, vertices: Any = None, *, next_poses: Any = None, next_vertices: Any = None) -> int:
+        """run(...).count: the number of candidate pairs. With output="count" the pairs are not stored."""
+        return self.run(poses, vertices, next_poses=next_poses, next_vertices=next_vertices).count
 
-    def digest(self, poses: Any = None, vertices: Any = None) -> Digest:
-        """run(poses, vertices).digest()."""
-        return self.run(poses, vertices).digest()
+    def digest(self, poses: Any = None, vertices: Any = None, *, next_poses: Any = None, next_vertices: Any = None) -> Digest:
+        """run(...).digest()."""
+        return self.run(poses, vertices, next_poses=next_poses, next_vertices=next_vertices).digest()
 
     def reset(self) -> None:
         """Discards the state that is carried from frame to frame."""
@@ -214,19 +222,21 @@ class Collider:
         """Ids of the devices that share each frame."""
         return self._core.devices
 
-    def _by_body(self, vertices):
-        """{number: array} from any mapping or sequence of arrays."""
+    def _by_body(self, vertices, what):
+        """{number: array} from any mapping or sequence of arrays; None: none. `what`: the name of the argument."""
+        if vertices is None:
+            return None
         if not isinstance(vertices, Mapping):
-            rows = _list(vertices, "vertices")
+            rows = _list(vertices, what)
         if not self._deformable:
-            raise ValueError("vertices: no body is deformable; make the collider with deformable=True or numbers of bodies")
+            raise ValueError(f"{what}: no body is deformable; make the collider with deformable=True or numbers of bodies")
         if not isinstance(vertices, Mapping):
             if len(rows) != len(self._deformable):
-                raise ValueError(f"vertices: {len(rows)} arrays for {len(self._deformable)} deformable bodies; give one array for each")
+                raise ValueError(f"{what}: {len(rows)} arrays for {len(self._deformable)} deformable bodies; give one array for each")
             vertices = dict(zip(self._deformable, rows))
         for body in vertices:
             if body not in self._deformable:
-                raise ValueError(f"vertices: {body!r} is not a deformable body (those are: {', '.join(map(str, self._deformable))})")
+                raise ValueError(f"{what}: {body!r} is not a deformable body (those are: {', '.join(map(str, self._deformable))})")
         return {int(body): rows for body, rows in vertices.items()}
 
 

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#include "python/core/host_input.h"
+
+#include "algorithms/bodies/range.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tandem::python {
+
+Frame rest_frame(const Scene& scene) {
+    Frame frame{std::vector<Pose>(scene.bodies.size()),
+                std::vector<std::vector<Eigen::Vector3d>>(scene.bodies.size())};
+    for (std::size_t body = 0; body < scene.bodies.size(); ++body)
+        if (scene.bodies[body].deformable)
+            frame.deformed[body] = scene.meshes[scene.bodies[body].mesh].vertices;
+    return frame;
+}
+
+HostInput::HostInput(const Scene& scene, Precision precision)
+    : scene_(scene),
+      precision_(precision),
+      limit_(largest_coordinate(precision)),
+      frame_(rest_frame(scene)) {}
+
+/// The copy counts coordinates that are out of range. Only then the library's slower check runs, which throws
+/// the error message.
+const Frame& HostInput::frame(const FrameArrays& arrays) {
+    out_of_range_ = 0;
+    if (arrays.poses)
+        set_poses(*arrays.poses);
+    else
+        std::ranges::fill(frame_.poses, Pose{});
+    for (std::size_t body = 0; body < scene_.bodies.size(); ++body) {
+        if (!scene_.bodies[body].deformable) continue;
+        if (const auto* const given = arrays.vertices_of(body))
+            set_vertices(body, *given);
+        else
+            frame_.deformed[body] = scene_.meshes[scene_.bodies[body].mesh].vertices;
+    }
+    if (out_of_range_ > 0) check_range(scene_, frame_, precision_);
+    return frame_;
+}
+
+void HostInput::set_poses(const GivenRows& poses) {
+    for (std::size_t body = 0; body < scene_.bodies.size(); ++body) {
+        if (scene_.bodies[body].deformable) {
+            frame_.poses[body] = {};
+            continue;
+        }
+        frame_.poses[body] = pose_of_row(static_cast<const double*>(poses.data) + 7 * body, body);
+        for (const double x : frame_.poses[body].translation) out_of_range_ += !(std::abs(x) <= limit_);
+    }
+}
+
+void HostInput::set_vertices(std::size_t body, const GivenRows& vertices) {
+    auto& points = frame_.deformed[body];
+    const auto count = vertices.rows;
+    points.resize(count);
+    static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double));
+    const auto* const from = static_cast<const double*>(vertices.data);
+    auto* const to = reinterpret_cast<double*>(points.data());
+    std::size_t out_of_range = 0; // a local variable, so that the loop is vectorised
+    for (std::size_t i = 0; i < 3 * count; ++i) {
+        out_of_range += !(std::abs(from[i]) <= limit_);
+        to[i] = from[i];
+    }
+    out_of_range_ += out_of_range;
+}
+
+} // namespace tandem::python
