@@ -185,13 +185,14 @@ class Swept(ColliderCase):
         moved = second + [0.5, 0.25, 0]
         soft, mixed = self.collider(deformable=True, **given), self.collider(deformable=[1], **given)
         whole = soft.digest(vertices=[first + 1, moved], next_vertices=[first, moved])
-        self.assertEqual(soft.digest(vertices=[first + 1, moved], next_vertices={1: moved}), whole)
         self.assertNotEqual(soft.digest(vertices=[first + 1, moved], next_vertices=[first + 1, moved]), whole)
+        self.assertEqual(soft.digest(vertices=[first + 1, moved], next_vertices={1: moved}), whole, "not the last successor's")
         poses, still = [[3, 0, 0, 1, 0, 0, 0], POSES[0]], [POSES[0]] * 2
         whole = mixed.digest(poses, [moved], next_poses=still, next_vertices=[second])
-        self.assertEqual(mixed.digest(poses, [moved], next_poses=still), whole)
-        self.assertEqual(mixed.digest(poses, [moved], next_vertices=[second]), whole)
-        self.assertNotEqual(mixed.digest(poses, [moved], next_poses=poses), whole)
+        for other in ({"next_poses": poses}, {"next_poses": still, "next_vertices": [moved]}):
+            self.assertNotEqual(mixed.digest(poses, [moved], **other), whole)
+            for given in ({"next_poses": still}, {"next_vertices": [second]}):
+                self.assertEqual(mixed.digest(poses, [moved], **given), whole)
 
     def test_auto_chooses_between_two_frames(self):
         (before, after), _ = self.passing()
