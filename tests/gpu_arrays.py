@@ -272,7 +272,7 @@ class Arrays(unittest.TestCase):
         self.assertEqual(tuple(first.shape), (answer.count, 4))
         self.assertEqual(tuple(map(int, answer.pairs(on_device=True).__dlpack_device__())), (2, int(DEVICE[5:])))
         kept = ON.host(first).copy()
-        self.assertTrue((kept[numpy.lexsort(kept.T[::-1])] == answer.pairs()).all())
+        self.assertTrue((kept == answer.pairs()).all())
         del answer
         for frame in (1, 2, 1):
             self.rigid.run(self.pile.poses(frame))

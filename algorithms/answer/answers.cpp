@@ -2,6 +2,7 @@
 #include "algorithms/answer/answers.h"
 
 #include "algorithms/answer/digest.h"
+#include "algorithms/answer/order_stage.h"
 #include "algorithms/narrow_phase/reference.h"
 #include "algorithms/parameters/table.h"
 #include "algorithms/sources.h"
@@ -92,12 +93,12 @@ public:
         return {buffers_->pairs.buffer(), tools_->layout(), pairs_, buffers_->pairs.capacity()};
     }
     void expand(std::uint64_t first, std::uint64_t count, const Buffer& expanded) const override {
-        if (first > pairs_ || count > pairs_ - first || expanded.bytes() / sizeof(Pair) < count)
-            throw DeviceError(fmt::format(
-                "{}: expand() cannot write pairs {} to {} of {} to a buffer of {} bytes; a pair takes "
-                "16 bytes",
-                tools_->device().info().id, first, first + count, pairs_, expanded.bytes()));
+        check_rows(first, count, expanded);
         tools_->expand(buffers_->pairs.buffer(), first, count, expanded);
+    }
+    void expand_sorted(const Buffer& expanded) const override {
+        check_rows(0, pairs_, expanded);
+        if (pairs_ > 0) tools_->expand_sorted(buffers_->pairs.buffer(), pairs_, expanded);
     }
     Digest digest() const override { return tools_->digest(buffers_->pairs.buffer(), pairs_); }
     Digest contact_digest() const override { return tools_->contact_digest(*buffers_, contacts_); }
@@ -127,6 +128,15 @@ public:
     }
 
 private:
+    /// Throws DeviceError unless there are these pairs, and `expanded` has room for them.
+    void check_rows(std::uint64_t first, std::uint64_t count, const Buffer& expanded) const {
+        if (first > pairs_ || count > pairs_ - first || expanded.bytes() / sizeof(Pair) < count)
+            throw DeviceError(fmt::format(
+                "{}: expand() cannot write pairs {} to {} of {} to a buffer of {} bytes; a pair takes "
+                "16 bytes",
+                tools_->device().info().id, first, first + count, pairs_, expanded.bytes()));
+    }
+
     std::shared_ptr<const AnswerTools> tools_;
     std::shared_ptr<const AnswerBuffers> buffers_;
     std::uint64_t pairs_, contacts_;
@@ -188,6 +198,16 @@ void AnswerTools::expand(const Buffer& pairs, std::uint64_t first, std::uint64_t
                                             bodies_->ids(),
                                             expanded};
     device().launch(expand_kernel_, {shape_.groups, shape_.group_size}, arguments);
+}
+
+void AnswerTools::expand_sorted(const Buffer& pairs, std::uint64_t count, const Buffer& expanded) const {
+    OrderStage order(*bodies_, shape_, false);
+    Status status(device(), Status::Writes::queued);
+    status.set(STATUS_PAIRS, count);
+    const auto sorted = device().allocate(count * row_words() * 4, "sorted pairs");
+    order.sort_pairs(pairs, static_cast<std::uint32_t>(count), status, sorted);
+    expand(sorted, 0, count, expanded);
+    device().finish(); // before the buffers are released
 }
 
 void AnswerTools::count_by_body(const Buffer& pairs, std::uint64_t count,

@@ -37,6 +37,8 @@ public:
     void count_by_body(const Buffer& pairs, std::uint64_t count, std::vector<std::uint64_t>& counts) const;
     /// See AnswerPart::expand; for any buffer of rows.
     void expand(const Buffer& pairs, std::uint64_t first, std::uint64_t count, const Buffer& expanded) const;
+    /// See AnswerPart::expand_sorted; for the first rows of any buffer.
+    void expand_sorted(const Buffer& pairs, std::uint64_t count, const Buffer& expanded) const;
     /// Appends the first rows of a buffer, with ids in input order. Waits for the download.
     void download(const Buffer& pairs, std::uint64_t count, std::vector<Pair>& out) const;
     /// Converts a row of pairs.clh, row_words() words with positions of tetrahedra, to a pair with ids in
@@ -72,8 +74,9 @@ public:
     void add_contacts(const AnswerBuffers& buffers, std::uint64_t count);
 
     PairBuffer pairs() const override { return {{}, tools_->layout(), count_, count_}; }
-    /// Throws DeviceError, because the pairs are not on a device.
+    /// Both throw DeviceError, because the pairs are not on a device.
     void expand(std::uint64_t first, std::uint64_t count, const Buffer& expanded) const override;
+    void expand_sorted(const Buffer& expanded) const override { expand(0, count_, expanded); }
     Digest digest() const override;
     Digest contact_digest() const override;
     void append_pairs(std::vector<Pair>& pairs) const override;

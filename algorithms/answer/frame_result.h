@@ -49,6 +49,9 @@ public:
     /// tetrahedron a, body b, tetrahedron b, with the scene's numbers. Throws DeviceError for pairs that are
     /// not on a device.
     virtual void expand(std::uint64_t first, std::uint64_t count, const Buffer& expanded) const = 0;
+    /// expand() of all pairs in canonical order, whatever setting order is. Waits. Throws also OutOfMemory:
+    /// it takes the bytes of the rows, 8 more for each pair, and 8 to 12 for each tetrahedron of the bodies.
+    virtual void expand_sorted(const Buffer& expanded) const = 0;
     /// Digest of its pairs. Computes it where the pairs are, and waits.
     virtual Digest digest() const = 0;
     /// Digest of its contacts, of their pairs, features and values. Computes it where they are, and waits.

@@ -110,21 +110,19 @@ void OrderStage::start_runs(std::uint32_t keys, bool by_pair, const Status& stat
     launch(start_runs_, arguments);
 }
 
-void OrderStage::sort_pairs(const AnswerBuffers& answer, const Status& status) {
+void OrderStage::sort_pairs(const Buffer& found, std::uint32_t capacity, const Status& status,
+                            const Buffer& sorted) {
     const StageScope scope(bodies_.device(), Stage::sort);
-    const auto& found = answer.pairs;
-    pairs_.reserve(whole_quads(found.capacity()));
+    pairs_.reserve(whole_quads(capacity));
     const auto &keys = pairs_.buffer(0), &before = pairs_.buffer(1);
     begin_counts(places_);
-    launch(count_pairs_,
-           std::array<Argument, 8>{found.buffer(), found.capacity(), bodies_.owners(), bodies_.ids(), firsts_,
-                                   counts_.buffer(), before, status.buffer()});
+    launch(count_pairs_, std::array<Argument, 8>{found, capacity, bodies_.owners(), bodies_.ids(), firsts_,
+                                                 counts_.buffer(), before, status.buffer()});
     start_runs(places_, false, status);
-    launch(scatter_pairs_,
-           std::array<Argument, 9>{found.buffer(), found.capacity(), bodies_.owners(), bodies_.ids(), firsts_,
-                                   counts_.buffer(), before, keys, status.buffer()});
-    launch(sort_pairs_, std::array<Argument, 7>{counts_.buffer(), places_, found.capacity(), keys, solids_,
-                                                found.buffer(), status.buffer()});
+    launch(scatter_pairs_, std::array<Argument, 9>{found, capacity, bodies_.owners(), bodies_.ids(), firsts_,
+                                                   counts_.buffer(), before, keys, status.buffer()});
+    launch(sort_pairs_, std::array<Argument, 7>{counts_.buffer(), places_, capacity, keys, solids_, sorted,
+                                                status.buffer()});
 }
 
 void OrderStage::sort_contacts(const AnswerBuffers& answer, const Status& status) {

@@ -18,7 +18,12 @@ public:
 
     /// Enqueues the sort of the pairs that the status counts, before anything refers to their rows. Throws
     /// OutOfMemory.
-    void sort_pairs(const AnswerBuffers& answer, const Status& status);
+    void sort_pairs(const AnswerBuffers& answer, const Status& status) {
+        const auto& pairs = answer.pairs;
+        sort_pairs(pairs.buffer(), pairs.capacity(), status, pairs.buffer());
+    }
+    /// The same for another buffer of `capacity` rows. Writes the pairs to `sorted`, which may be `found`.
+    void sort_pairs(const Buffer& found, std::uint32_t capacity, const Status& status, const Buffer& sorted);
     /// Enqueues the sort of the contacts of sorted pairs. Throws OutOfMemory.
     void sort_contacts(const AnswerBuffers& answer, const Status& status);
 

@@ -29,6 +29,7 @@ public:
     void expand(std::uint64_t, std::uint64_t, const Buffer&) const override {
         throw DeviceError("pairs of several ranks are on no device; download them");
     }
+    void expand_sorted(const Buffer& expanded) const override { expand(0, count_, expanded); }
     Digest digest() const override { return digests()[0]; }
     Digest contact_digest() const override { return digests()[1]; }
     void append_pairs(std::vector<Pair>& pairs) const override {

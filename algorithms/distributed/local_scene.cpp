@@ -17,6 +17,7 @@ public:
     void expand(std::uint64_t first, std::uint64_t count, const Buffer& expanded) const override {
         part_->expand(first, count, expanded);
     }
+    void expand_sorted(const Buffer& expanded) const override { part_->expand_sorted(expanded); }
     Digest digest() const override { return part_->digest(); }
     Digest contact_digest() const override { return part_->contact_digest(); }
     void append_pairs(std::vector<Pair>& pairs) const override { part_->append_pairs(pairs); }

@@ -72,7 +72,11 @@ const Answer::OnDevice& Answer::on_device() const {
                                       device.info().id, result_.parts.size()));
     OnDevice all{device.allocate(std::max<std::size_t>(1, result_.count) * sizeof(Pair), "pairs for DLPack"),
                  kind->first, kind->second};
-    if (result_.count > 0) result_.parts.front()->expand(0, result_.count, all.rows);
+    const bool is_sorted = collider_->settings()[parameters::order] == AnswerOrder::canonical;
+    if (result_.count > 0 && is_sorted)
+        result_.parts.front()->expand(0, result_.count, all.rows);
+    else if (result_.count > 0)
+        result_.parts.front()->expand_sorted(all.rows);
     device.finish();
     on_device_ = std::move(all);
     return *on_device_;

@@ -29,8 +29,8 @@ public:
         int type = 0;   ///< DLPack's number of the device type
         int number = 0; ///< number of the device among those of its type
     };
-    /// The first call writes the rows, in no order, and waits until they are complete. Throws InputError if
-    /// DLPack has no name for the memory, DeviceError if the pairs are not all on one device.
+    /// The first call writes the rows, in canonical order, and waits until they are complete. Throws
+    /// InputError if DLPack has no name for the memory, DeviceError if the pairs are not all on one device.
     const OnDevice& on_device() const;
 
 private:

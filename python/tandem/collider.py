@@ -90,7 +90,7 @@ class Answer:
         pairs of one body (self_collision), tetrahedron a < tetrahedron b.
 
         Returns an (n, 4) int32 NumPy array, sorted by its columns. With `on_device`, returns an object with __dlpack__ over (n, 4) int32 in
-        memory of the device, in no order unless order="canonical". torch.from_dlpack, cupy.from_dlpack and (device host) numpy.from_dlpack read it without a copy.
+        memory of the device, in the same order, for which the first call sorts them there. torch.from_dlpack, cupy.from_dlpack and (device host) numpy.from_dlpack read it without a copy.
         Every call returns the same memory. The rows are complete when the call returns, so that any stream may read them. The memory lives
         as long as an array over it. These libraries do not support OpenCL memory, for which `on_device` raises ValueError."""
         return self._core.pairs_on_device() if on_device else self._core.pairs()
