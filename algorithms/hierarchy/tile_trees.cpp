@@ -203,7 +203,7 @@ void TileTrees::do_take(const Subdomain& subdomain) {
 }
 
 std::size_t TileTrees::do_bytes() const {
-    auto sum = shapes_.bytes();
+    auto sum = shapes_.bytes() + (incidence_ ? incidence_->bytes() : 0);
     for (const auto* buffer :
          {&leaves_, &uppers_, &roots_, &volumes_, &tile_table_, &tops_, &taking_part_, &marks_})
         sum += buffer->bytes();

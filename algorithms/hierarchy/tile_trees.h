@@ -3,6 +3,7 @@
 
 #include "algorithms/bodies/bodies.h"
 #include "algorithms/hierarchy/hierarchy.h"
+#include "algorithms/hierarchy/tile_incidence.h"
 #include "algorithms/hierarchy/tile_shapes.h"
 
 #include <optional>
@@ -21,6 +22,9 @@ public:
               std::uint32_t units_at_once);
     TileTrees(const Bodies& bodies, Slabs slabs, std::uint32_t group_size, std::uint64_t most_seeds)
         : TileTrees(bodies, slabs, group_size, most_seeds, bodies.device().info().compute_units) {}
+
+    /// Uploads the table that a walk with pairs of one body needs. Throws OutOfMemory.
+    void add_incidence(SelfPairs self) { incidence_.emplace(bodies_, self); }
 
     const Bodies& bodies() const { return bodies_; }
     /// Levels of the highest tree.
@@ -66,6 +70,8 @@ public:
     const Buffer& tile_table() const { return tile_table_; } ///< rows of tiles.clh
     const Buffer& tops() const { return tops_; }             ///< tiles that bodies start with, or NO_TILE
     const TileShapes& shapes() const { return shapes_; }
+    /// Requires add_incidence().
+    const TileIncidence& incidence() const { return *incidence_; }
 
 private:
     /// A row of the tile table (tiles.clh).
@@ -110,6 +116,7 @@ private:
     std::uint32_t group_size_;
     std::uint32_t units_at_once_;
     TileShapes shapes_;
+    std::optional<TileIncidence> incidence_;
     std::vector<std::uint32_t> level_first_; ///< the first tile of each level
     std::vector<bool> is_top_;               ///< by level: whether it is the top of some body's tree
     /// Common start of all bodies, if it is below some tops: a level and the maximum number of tiles per

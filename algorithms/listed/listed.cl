@@ -160,7 +160,7 @@ KERNEL void list_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
         uint hits[LANE_PARTS];
         FOR_LANES hits[part] = 0u;
         FIND_HITS(&team, rows, box, DIRECTIONS, keeps_a, hits)
-        if (SELF && pair.a == pair.b) keep_ascending(hits, by_a, 0u);
+        if (SELF && pair.a == pair.b) keep_ascending(hits, by_a);
         int more;
         do {
             put_hits(&team, hits, pair.a * LANES, pair.b * LANES, by_a);

@@ -8,7 +8,34 @@
     (BOX_WORDS <= 6 ? 40 : BOX_WORDS <= 8 ? 56 : BOX_WORDS <= 12 ? 64 : BOX_WORDS <= 18 ? 72 : 255)
 #include "backends/portable.h"
 #include "algorithms/answer/emit.clh"
+#include "algorithms/tiled/incidence.clh"
 #include "algorithms/tiled/leaves.clh"
+
+// Tables that name slots.
+typedef struct {
+    GLOBAL const uint* tiles;
+    GLOBAL const uint* bodies;
+    GLOBAL const uint* ids;
+} SlotTables;
+
+// Two slots; those of one body with the smaller number of a tetrahedron first.
+DEVICE WordPair smaller_first(const SlotTables* tables, WordPair slots) {
+    WordRow pair = items_of_slots(tables->tiles, slots.x, slots.y);
+    if (pair.x != pair.y) return slots;
+    const uint item_a = pair.z;
+    put_smaller_first(tables->bodies, tables->ids, &pair);
+    const WordPair swapped = {slots.y, slots.x};
+    return pair.z == item_a ? slots : swapped;
+}
+
+// Writes the waiting pairs of the team as candidate pairs, and nothing past `capacity`.
+DEVICE void write_found(const Team* team, uint waiting, const SlotTables* tables, GLOBAL uint* found,
+                        uint capacity) {
+    if (SELF)
+        for (uint i = LANE_ID; i < waiting; i += (uint)LANE_STEP)
+            team->pairs[i] = smaller_first(tables, team->pairs[i]);
+    write_candidates(team, waiting, tables->tiles, found, capacity);
+}
 
 // `marks`: set for both tiles if `marked`.
 DEVICE void write_tile_pairs(const Team* team, uint waiting, GLOBAL uint* list, uint capacity,
@@ -96,7 +123,7 @@ KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL
         uint hits[LANE_PARTS];
         FOR_LANES hits[part] = 0u;
         FIND_HITS(&team, rows, box, DIRECTIONS, keeps_a, hits)
-        if (SELF && pair.a == pair.b) keep_ascending(hits, by_a, 1u);
+        if (SELF && first_a == first_b) keep_ascending(hits, by_a);
         int more;
         do {
             put_hits(&team, hits, first_a, first_b, by_a);
@@ -158,7 +185,7 @@ DEVICE int rest_overlaps(LOCAL const real* a, LOCAL const real* b) {
 #endif
 
 // Whether every pair found is a candidate pair.
-#define IS_DECIDED (REST_DIRECTIONS == 0 && OUTPUT == OUTPUT_PAIRS && !SELF)
+#define IS_DECIDED (REST_DIRECTIONS == 0 && OUTPUT == OUTPUT_PAIRS)
 
 // Tests tiles of level 0: boxes that overlap along all directions of k are candidate pairs.
 KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots, GLOBAL const uint* tiles,
@@ -167,9 +194,12 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
                             GLOBAL const uint* starts, GLOBAL const uint* vertex_numbers,
                             GLOBAL const uint* corners, GLOBAL const uint* bodies, GLOBAL const real* poses,
                             GLOBAL const real* vertices, GLOBAL const uint* ids,
-                            GLOBAL const uint* tetrahedra, GLOBAL uint* found, uint capacity,
+                            GLOBAL const uint* incident_starts, GLOBAL const uint* incident_partners,
+                            GLOBAL const uint* incident_masks, GLOBAL uint* found, uint capacity,
                             GLOBAL uint* status) {
     TEAM_ARRAYS(LANES * ROW_UNITS(LEAF_DIRECTIONS))
+    const SlotTables tables = {tiles, bodies, ids};
+    const Incidence incidence = {incident_starts, incident_partners, incident_masks};
 #if REST_DIRECTIONS > 0
     LOCAL_ARRAY(real, all_rest, LANE_TEAMS * (REST_A_REALS + REST_B_REALS));
     LOCAL real* rest_a = all_rest + LANE_TEAM * (REST_A_REALS + REST_B_REALS);
@@ -196,6 +226,9 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
         uint keeps_a[LANE_PARTS];
         uint keeps_b[LANE_PARTS];
         FOR_LANES keeps_a[part] = keeps_b[part] = (uint)tested;
+        uint no_pairs[LANE_PARTS]; // bits of the lanes of b with which a lane of a makes no pair
+        FOR_LANES no_pairs[part] = 0u;
+        int has_masks = 0; // the masks are those of a's lanes, so that rows must be boxes of b
         if (tested) {
             LANE_BOX(box_b, LEAF_DIRECTIONS);
             load_leaves(leaves, pair.b, box_b);
@@ -207,11 +240,15 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
             GLOBAL const real* root_b = root_of(roots, pair.b);
             LEAVE_OUT_APART(box, LEAF_DIRECTIONS, root_b, keeps_a)
             if (WINDOWED) lanes_in_window(status, &a, 0u, keeps_a);
+            if (SELF && a.body == b.body) {
+                has_masks = load_masks(&incidence, a.boxes, b.boxes, no_pairs);
+                FOR_LANES keeps_a[part] &= (uint)(no_pairs[part] != 0xffffffffu);
+            }
         }
         count_left(&team.left_a, keeps_a);
         LANE_BARRIER;
-        const int by_a = rows_are_a(&team);
-        const uint rows = row_count(&team);
+        const int by_a = SELF && has_masks ? 0 : rows_are_a(&team);
+        const uint rows = SELF && has_masks ? row_count_of_b(&team) : row_count(&team);
         if (tested) count_tests(&tally, rows, is_seed);
         if (TEAM_IS_FREE && rows == 0u) {
             begin_rows(&team);
@@ -228,7 +265,7 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
         uint hits[LANE_PARTS];
         FOR_LANES hits[part] = 0u;
         FIND_HITS(&team, rows, box, LEAF_DIRECTIONS, keeps_a, hits)
-        if (SELF && pair.a == pair.b) keep_ascending(hits, by_a, 0u);
+        if (SELF) FOR_LANES hits[part] &= ~no_pairs[part];
         int more;
         do {
             put_hits(&team, hits, pair.a * LANES, pair.b * LANES, by_a);
@@ -274,18 +311,17 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
                             is_pair
                             && rest_overlaps(rest_a + lane_a * REST_STRIDE, rest_b + lane_b * REST_STRIDE);
 #endif
-                        WordRow row = {a.body, b.body, a.item + lane_a, b.item + lane_b};
-                        if (SELF && row.x == row.y)
-                            is_pair = is_pair && keep_self_pair(bodies, tetrahedra, ids, &row);
                         if (OUTPUT == OUTPUT_PAIRS) {
                             const uint slot = reserve_slot(&team.kept, is_pair);
-                            const int swapped = SELF && row.z > row.w && row.x == row.y;
-                            const WordPair kept_pair = {swapped ? slot_b[part] : slot_a[part],
-                                                        swapped ? slot_a[part] : slot_b[part]};
+                            const WordPair kept_pair = {slot_a[part], slot_b[part]};
                             if (is_pair) team.pairs[slot] = kept_pair;
                         } else if (is_pair) {
                             tally.count += 1;
-                            if (OUTPUT == OUTPUT_DIGEST) tally_digest(&tally, bodies, ids, row);
+                            WordRow row = {a.body, b.body, a.item + lane_a, b.item + lane_b};
+                            if (OUTPUT == OUTPUT_DIGEST) {
+                                if (SELF && row.x == row.y) put_smaller_first(bodies, ids, &row);
+                                tally_digest(&tally, bodies, ids, row);
+                            }
                         }
                     }
                     next += LANES;
@@ -296,7 +332,7 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
             const int now = kept >= PAIRS_FLUSHED;
             reserve(&team, kept, now, status + STATUS_PAIRS);
             LANE_BARRIER;
-            if (now) write_candidates(&team, kept, tiles, found, capacity);
+            if (now) write_found(&team, kept, &tables, found, capacity);
             begin_count(&team.found, now ? 0u : kept);
             begin_count(&team.kept, now ? 0u : kept);
             LANE_BARRIER;
@@ -305,6 +341,6 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
     const uint kept = reserved_slots(&team.found);
     reserve(&team, kept, 1, status + STATUS_PAIRS);
     LANE_BARRIER;
-    if (OUTPUT == OUTPUT_PAIRS) write_candidates(&team, kept, tiles, found, capacity);
+    if (OUTPUT == OUTPUT_PAIRS) write_found(&team, kept, &tables, found, capacity);
     flush(&tally, status);
 }

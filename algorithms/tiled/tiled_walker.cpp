@@ -25,7 +25,8 @@ void TiledWalker::do_report(const Status& status, std::map<std::string_view, std
 void TiledWalker::launch_leaves(const WalkTask& task) {
     const auto& bodies = trees_.bodies();
     const auto& shapes = trees_.shapes();
-    const std::array<Argument, 20> arguments{trees_.leaves(),
+    const auto& incidence = trees_.incidence();
+    const std::array<Argument, 22> arguments{trees_.leaves(),
                                              trees_.roots(),
                                              trees_.tile_table(),
                                              trees_.tops(),
@@ -41,7 +42,9 @@ void TiledWalker::launch_leaves(const WalkTask& task) {
                                              bodies.poses(),
                                              bodies.vertices(),
                                              bodies.ids(),
-                                             bodies.tetrahedra(),
+                                             incidence.starts(),
+                                             incidence.partners(),
+                                             incidence.masks(),
                                              task.answer.pairs.buffer(),
                                              task.answer.pairs.capacity(),
                                              task.status.buffer()};

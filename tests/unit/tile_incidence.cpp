@@ -15,9 +15,9 @@ using support::shaken_box;
 constexpr std::size_t tile_size = TANDEM_LANES;
 
 bool share_vertex(std::span<const std::uint32_t> tetrahedra, std::size_t a, std::size_t b) {
-    const auto others = tetrahedra.subspan(4 * b, 4);
+    const auto rest = tetrahedra.subspan(4 * b, 4);
     return std::ranges::any_of(tetrahedra.subspan(4 * a, 4), [&](std::uint32_t vertex) {
-        return std::ranges::find(others, vertex) != others.end();
+        return std::ranges::find(rest, vertex) != rest.end();
     });
 }
 
