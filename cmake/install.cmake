@@ -21,7 +21,7 @@ endforeach()
 set(public_headers
   backends/device.h backends/trace.h backends/registry.h backends/host/host_device.h backends/opencl/opencl_device.h
   backends/cuda/cuda_device.h backends/ranks.h
-  algorithms/traversal.h algorithms/device_frame.h algorithms/cost.h algorithms/answer/frame_result.h
+  algorithms/traversal.h algorithms/device_frame.h algorithms/bodies/frame_input.h algorithms/cost.h algorithms/answer/frame_result.h
   algorithms/parameters/parameter.h algorithms/parameters/choices.h algorithms/parameters/contact_rules.clh
   algorithms/parameters/table.h
   algorithms/bounds/geometry.h algorithms/bodies/range.h scenes/scene.h scenes/dynamics.h
