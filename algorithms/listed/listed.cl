@@ -7,6 +7,7 @@
 #define KERNEL_REGISTERS (BOX_WORDS <= 8 ? 64 : BOX_WORDS <= 12 ? 80 : BOX_WORDS <= 18 ? 96 : 255)
 #include "backends/portable.h"
 #include "algorithms/listed/pad.clh"
+#define TESTED_DIRECTIONS LEAF_DIRECTIONS
 #include "algorithms/tiled/leaves.clh"
 
 // A list, and what a walk appends to it.

@@ -4,11 +4,20 @@
 // which body pairs start there. It finds the pairs of the next level or, at level 0, candidate pairs.
 // The walk waits for memory, so many groups at once pay; fewer registers than these make it use more memory.
 #define BOX_WORDS (K * PRECISION / 32)
-#define KERNEL_REGISTERS                                                                                     \
+#define WALK_REGISTERS                                                                                       \
     (BOX_WORDS <= 6 ? 40 : BOX_WORDS <= 8 ? 56 : BOX_WORDS <= 12 ? 64 : BOX_WORDS <= 18 ? 72 : 255)
+#define KERNEL_REGISTERS WALK_REGISTERS
 #include "backends/portable.h"
 #include "algorithms/answer/emit.clh"
 #include "algorithms/tiled/incidence.clh"
+
+// Directions along which all boxes of two tiles of level 0 are tested. With pairs of one body there are many
+// pairs of tiles, but masks leave few hits, so that a test of three directions and then of hits is less work.
+#if defined(__CUDACC__) || defined(__OPENCL_C_VERSION__)
+#define TESTED_DIRECTIONS (SELF && LEAF_DIRECTIONS > 3 ? 3 : LEAF_DIRECTIONS)
+#else // SELF is no constant
+#define TESTED_DIRECTIONS LEAF_DIRECTIONS
+#endif
 #include "algorithms/tiled/leaves.clh"
 
 // Tables that name slots.
@@ -184,9 +193,31 @@ DEVICE int rest_overlaps(LOCAL const real* a, LOCAL const real* b) {
 }
 #endif
 
-// Whether every pair found is a candidate pair.
-#define IS_DECIDED (REST_DIRECTIONS == 0 && OUTPUT == OUTPUT_PAIRS)
+// Whether the boxes of two slots overlap along the stored directions from TESTED_DIRECTIONS on. Three at a
+// time, because most of these pairs are apart.
+DEVICE int other_directions_overlap(GLOBAL const real* leaves, uint slot_a, uint slot_b) {
+    GLOBAL const real* a = leaves_of(leaves, slot_a / LANES) + slot_a % LANES;
+    GLOBAL const real* b = leaves_of(leaves, slot_b / LANES) + slot_b % LANES;
+    uint apart = 0;
+    for (uint first = TESTED_DIRECTIONS; first < (uint)LEAF_DIRECTIONS && apart == 0u; first += 3u) {
+        UNROLL for (uint i = 0; i < 3u; ++i) {
+            const uint d = first + i < (uint)LEAF_DIRECTIONS ? first + i : first;
+            apart |= (uint)APART(a[d * LANES], a[(LEAF_DIRECTIONS + d) * LANES], b[d * LANES],
+                                 b[(LEAF_DIRECTIONS + d) * LANES]);
+        }
+    }
+    return apart == 0u;
+}
 
+// Whether every pair found is a candidate pair.
+#define IS_DECIDED (TESTED_DIRECTIONS == DIRECTIONS && OUTPUT == OUTPUT_PAIRS)
+
+#undef KERNEL_REGISTERS
+#define KERNEL_REGISTERS                                                                                     \
+    (TESTED_DIRECTIONS == LEAF_DIRECTIONS ? WALK_REGISTERS                                                   \
+     : PRECISION == 64                    ? 80                                                               \
+     : OUTPUT == OUTPUT_PAIRS             ? 48                                                               \
+                                          : 56)
 // Tests tiles of level 0: boxes that overlap along all directions of k are candidate pairs.
 KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots, GLOBAL const uint* tiles,
                             GLOBAL const uint* tops, GLOBAL const uint* pairs, uint pair_capacity,
@@ -197,7 +228,7 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
                             GLOBAL const uint* incident_starts, GLOBAL const uint* incident_partners,
                             GLOBAL const uint* incident_masks, GLOBAL uint* found, uint capacity,
                             GLOBAL uint* status) {
-    TEAM_ARRAYS(LANES * ROW_UNITS(LEAF_DIRECTIONS))
+    TEAM_ARRAYS(LANES * ROW_UNITS(TESTED_DIRECTIONS))
     const SlotTables tables = {tiles, bodies, ids};
     const Incidence incidence = {incident_starts, incident_partners, incident_masks};
 #if REST_DIRECTIONS > 0
@@ -210,7 +241,7 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
     Tally tally = empty_tally();
     Turns turns =
         first_turn(own_pairs(begins, pair_capacity, status), tile_pair_count(status, 0u, list_capacity));
-    LANE_BOX(box, LEAF_DIRECTIONS);
+    LANE_BOX(box, TESTED_DIRECTIONS);
     uint box_of = 0xffffffffu; // tile of `box`
     TilePair ahead = tile_pair_at(&turns, pairs, tops, begins, roots, list);
     LANE_BARRIER;
@@ -230,15 +261,15 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
         FOR_LANES no_pairs[part] = 0u;
         int has_masks = 0; // the masks are those of a's lanes, so that rows must be boxes of b
         if (tested) {
-            LANE_BOX(box_b, LEAF_DIRECTIONS);
+            LANE_BOX(box_b, TESTED_DIRECTIONS);
             load_leaves(leaves, pair.b, box_b);
             if (box_of != pair.a) load_leaves(leaves, pair.a, box);
             box_of = pair.a;
             GLOBAL const real* root_a = root_of(roots, pair.a);
-            LEAVE_OUT_APART(box_b, LEAF_DIRECTIONS, root_a, keeps_b)
-            STORE_ROWS(&team, rows_b, box_b, LEAF_DIRECTIONS, keeps_b)
+            LEAVE_OUT_APART(box_b, TESTED_DIRECTIONS, root_a, keeps_b)
+            STORE_ROWS(&team, rows_b, box_b, TESTED_DIRECTIONS, keeps_b)
             GLOBAL const real* root_b = root_of(roots, pair.b);
-            LEAVE_OUT_APART(box, LEAF_DIRECTIONS, root_b, keeps_a)
+            LEAVE_OUT_APART(box, TESTED_DIRECTIONS, root_b, keeps_a)
             if (WINDOWED) lanes_in_window(status, &a, 0u, keeps_a);
             if (SELF && a.body == b.body) {
                 has_masks = load_masks(&incidence, a.boxes, b.boxes, no_pairs);
@@ -255,7 +286,7 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
             continue;
         }
         if (by_a) {
-            STORE_ROWS(&team, rows_a, box, LEAF_DIRECTIONS, keeps_a)
+            STORE_ROWS(&team, rows_a, box, TESTED_DIRECTIONS, keeps_a)
             load_leaves(leaves, pair.b, box);
             box_of = pair.b;
             FOR_LANES keeps_a[part] = keeps_b[part];
@@ -264,7 +295,7 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
         LANE_BARRIER;
         uint hits[LANE_PARTS];
         FOR_LANES hits[part] = 0u;
-        FIND_HITS(&team, rows, box, LEAF_DIRECTIONS, keeps_a, hits)
+        FIND_HITS(&team, rows, box, TESTED_DIRECTIONS, keeps_a, hits)
         if (SELF) FOR_LANES hits[part] &= ~no_pairs[part];
         int more;
         do {
@@ -311,6 +342,8 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
                             is_pair
                             && rest_overlaps(rest_a + lane_a * REST_STRIDE, rest_b + lane_b * REST_STRIDE);
 #endif
+                        if (TESTED_DIRECTIONS < LEAF_DIRECTIONS)
+                            is_pair = is_pair && other_directions_overlap(leaves, slot_a[part], slot_b[part]);
                         if (OUTPUT == OUTPUT_PAIRS) {
                             const uint slot = reserve_slot(&team.kept, is_pair);
                             const WordPair kept_pair = {slot_a[part], slot_b[part]};

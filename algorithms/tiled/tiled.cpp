@@ -75,6 +75,8 @@ private:
         const SceneFacts s(scene, settings);
         const auto slabs = settings[tandem::parameters::slabs];
         const auto words = leaf_words_of(settings, slabs);
+        const bool is_self = settings[tandem::parameters::self] != SelfPairs::off;
+        const auto tested = is_self ? std::min(words, 6.0) : words; // TESTED_DIRECTIONS of tiled.cl
         auto costs = tile_tree_costs(s, words, slabs == Slabs::touched);
         const auto upper = [](const FrameFacts& f) { return f.counted(tiled_counters::upper_tests.name); };
         costs.push_back(upper_tiles_cost(s.k));
@@ -85,8 +87,8 @@ private:
                         + s.pair_bytes * f.candidate_pairs;
              },
              [=](const FrameFacts& f) {
-                 return words * (f.counted(counters::bvtt_nodes.name) - upper(f))
-                        + (s.k - words) * f.candidate_pairs;
+                 return tested * (f.counted(counters::bvtt_nodes.name) - upper(f))
+                        + (s.k - tested) * f.candidate_pairs;
              },
              "reads pairs of tiles and bounds of tetrahedra in candidate pairs, writes candidate pairs; an "
              "operation per tested box and end of a leaf, the rest of k per candidate pair"});

@@ -122,7 +122,8 @@ TEST_P(SelfPairsOf, LargerBodiesHaveThePairsOfASweep) {
         for (const SettingTexts& more :
              {SettingTexts{}, SettingTexts{{"leaves", "4"}, {"seed_threshold", "1"}},
               SettingTexts{{"schedule", "item"}, {"descent", "both"}}, SettingTexts{{"most_seeds", "1"}},
-              SettingTexts{{"slabs", "three"}}}) {
+              SettingTexts{{"slabs", "three"}}, SettingTexts{{"slabs", "all"}},
+              SettingTexts{{"slabs", "touched"}}}) {
             if (!std::ranges::all_of(more, [&](const auto& one) { return declares(*traversal, one.first); }))
                 continue;
             auto given = more;

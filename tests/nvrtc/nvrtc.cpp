@@ -121,6 +121,8 @@ Programs defaults() {
             prepare(device, *traversal, traversal->presets().front().values, {{"precision", precision}});
     for (const std::string most_seeds : {"1", "16384"}) // start at tops, and below them
         prepare(device, algorithm("tiled"), {}, {{"most_seeds", most_seeds}});
+    for (const std::string k : {"6", "18"})
+        prepare(device, algorithm("tiled"), {}, {{"k", k}, {"self", "on"}});
     for (const auto precision : {Precision::fp32, Precision::fp64}) prepare_pair_list(device, precision);
     return device.requested();
 }
