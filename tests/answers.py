@@ -27,17 +27,36 @@ def own_algorithms():
 
 class Answers(Case):
     def test_check_prints_the_matrix(self):
+        """The short form has all presets on the host, and those that come first on all devices, because PoCL compiles slowly."""
         presets = sum(len(entry["presets"]) for entry in own_algorithms())
         devices = [d["id"] for entry in json.loads(tandem("devices", "--json")[1]) for d in entry["devices"]]
-        for arguments in (("plates", "--frames", "20:21"), ("pile:bodies=8,frames=2",))[0 if LONG else 1:]:
+        first = ",".join({entry["presets"][0]["name"] for entry in own_algorithms()})
+        chosen = sum(preset["name"] in first.split(",") for entry in own_algorithms() for preset in entry["presets"])
+        pile = "pile:bodies=8,frames=2"
+        short = ((pile, "--device", "host"), presets), ((pile, "--preset", first, *sets(SMALL)), chosen * len(devices))
+        full = (("plates", "--frames", "20:21"), presets * len(devices)), ((pile,), presets * len(devices))
+        for arguments, cells in full if LONG else short:
             status, out, errors = tandem("check", *arguments)
             self.assertEqual((status, errors), (0, []), out)
             rows = [line.split() for line in out.splitlines() if line.split()[:1] and line.split()[0] in devices]
-            self.assertEqual(len(rows), presets * len(devices), out)
+            self.assertEqual(len(rows), cells, out)
             for row in rows:
                 self.assertGreater(int(row[3]), 0)
                 self.assertEqual((row[4:6], row[8]), (["0", "0"], "yes"), out)
             self.assertIn("\nall agree with the reference\n", out)
+
+    def test_check_leaves_out_what_the_settings_do_not_suit(self):
+        asked = ("check", "pile:bodies=4,frames=2", "--device", "host", "--set", "order=canonical")
+        status, out, errors = tandem(*asked)
+        self.assertEqual((status, len(errors)), (0, 1), out)
+        rows = [line for line in out.splitlines() if line.startswith("host ")]
+        presets = [preset["name"] for entry in own_algorithms() for preset in entry["presets"]]
+        left_out = presets.count("published") + presets.count("fair-published")
+        self.assertGreater(left_out, 0)
+        self.assertIn(f"{len(presets) - len(rows)} of {len(presets)} cells left out: setting order=canonical does not go with residency=published", errors[0])
+        self.assertFalse(any("published" in row for row in rows), out)
+        self.bad("does not go with residency=published", *asked, "--preset", "published")
+        self.bad("is unknown", *asked[:-1], "order=sorted")
 
     def test_dumps_agree_with_brute_force(self):
         parts = [bar(4, (0, 0, 0)), bar(3, (0.5, 0.25, 0.375))]

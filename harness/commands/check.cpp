@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <numeric>
 
 namespace tandem {
@@ -117,6 +118,34 @@ int check_hard(const RunOptions& options, const std::vector<Cell>& cells,
     return code;
 }
 
+/// Replaces the queue arrays that take a part of the device's memory. Answers do not depend on their size,
+/// and an upload of gigabytes a batch would take most of a check.
+std::vector<Cell> with_small_queues(std::vector<Cell> cells) {
+    for (auto& cell : cells)
+        for (const auto* parameter : cell.algorithm->parameters())
+            if (parameter->name == "queue_bytes" && cell.settings.text(parameter->name) == "device")
+                cell.settings.set({parameter, 4 << 20});
+    return cells;
+}
+
+/// The cells of a check. A request without presets asks for all of them: those that its settings do not suit
+/// are left out, with a line for each reason, unless none is left.
+std::vector<Cell> plan_check(Request request, std::span<const DeviceGroup> devices) {
+    if (!request.presets.empty()) return with_small_queues(plan(request, devices));
+    request.presets.emplace_back("all");
+    std::vector<std::string> reasons;
+    std::size_t left_out = 0;
+    auto cells = plan(request, devices, [&](const InputError& error) {
+        ++left_out;
+        if (std::ranges::find(reasons, error.what()) == reasons.end()) reasons.emplace_back(error.what());
+    });
+    if (cells.empty() && left_out > 0) throw InputError(reasons.front());
+    if (left_out > 0)
+        print_message("tandem: {} of {} cells left out: {}\n", left_out, left_out + cells.size(),
+                      fmt::join(reasons, "; "));
+    return with_small_queues(std::move(cells));
+}
+
 } // namespace
 
 int check_command(const RunOptions& options) {
@@ -126,9 +155,8 @@ int check_command(const RunOptions& options) {
     check_required(backends, options.require);
     const auto devices = open_devices(options, backends, request.devices);
     const auto scenes = expand_hard(options.scene);
-    if (scenes.size() > 1) return check_hard(options, plan(request, devices), scenes);
-    if (request.presets.empty()) request.presets.emplace_back("all");
-    const auto job = open_job(options, plan(request, devices));
+    if (scenes.size() > 1) return check_hard(options, with_small_queues(plan(request, devices)), scenes);
+    const auto job = open_job(options, plan_check(request, devices));
     RecordFile file(options.out);
     print_scene(job.scene, job.range);
     const Progress progress(options.quiet);
