@@ -143,10 +143,29 @@ std::span<const DynamicsSetting> dynamics_settings() {
     return settings;
 }
 
+/// The values of the configurations in the paper's release, for all scenes that it has.
+std::span<const DynamicsPreset> dynamics_presets() {
+    static const std::vector<DynamicsPreset> presets{
+        {"paper",
+         "the paper's solver: at most 150 iterations, tolerances of 0.01, no warm start, no corrections",
+         {"step=0.01", "method=gauss_seidel", "iterations=150", "absolute_tolerance=0.01",
+          "relative_tolerance=0.01", "warm_start=0", "pre_stabilize=0", "post_stabilize=0", "bounce=1",
+          "bound_energy=0", "surface_normals=0", "contact_layer=0", "linear_damping=0.01",
+          "angular_damping=0.01", "merge_distance=0", "per_pair=0"}}};
+    return presets;
+}
+
 void set_dynamics(Dynamics& dynamics, std::string_view assignment) {
     const auto equals = assignment.find('=');
     const auto name = assignment.substr(0, equals);
     std::vector<std::string> names;
+    if (equals == std::string_view::npos)
+        for (const auto& preset : dynamics_presets()) {
+            names.emplace_back(preset.name);
+            if (preset.name != name) continue;
+            for (const auto& each : preset.assignments) set_dynamics(dynamics, each);
+            return;
+        }
     for (const auto& setting : dynamics_settings()) {
         names.emplace_back(setting.name);
         if (setting.name != name) continue;

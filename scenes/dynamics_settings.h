@@ -23,7 +23,16 @@ struct DynamicsSetting {
 
 std::span<const DynamicsSetting> dynamics_settings();
 
-/// Applies "NAME=VALUE" to `dynamics`. Throws InputError with the nearest name or the allowed values.
+/// A named set of values.
+struct DynamicsPreset {
+    std::string_view name, help;
+    std::vector<std::string_view> assignments; ///< "NAME=VALUE"
+};
+
+std::span<const DynamicsPreset> dynamics_presets();
+
+/// Applies "NAME=VALUE", or all values of a preset's name, to `dynamics`. Throws InputError with the nearest
+/// name or the allowed values.
 void set_dynamics(Dynamics& dynamics, std::string_view assignment);
 
 /// All settings as "step=0.01,method=gauss_seidel,..."; equal texts give equal motion.

@@ -108,6 +108,15 @@ class Simulations(Case):
         self.assertIn("12 steps in", text)
         self.assertEqual(runs[0]["dynamics"]["warm_start"], "1")
 
+    def test_the_solver_of_the_paper_is_a_preset(self):
+        """Later settings replace its values, and earlier ones are replaced by them."""
+        record = self.work / "simulation-paper.jsonl"
+        for more, iterations in (("--dynamics", "iterations=20"), "20"), ((), "150"):
+            self.outputs("simulate", "block:bodies=2", "--device", "host", "--steps", 1, "--record", record, "--dynamics", "warm_start=1", "--dynamics", "paper", *more)
+            found = self.lines(record)[1][-1]["dynamics"]
+            self.assertEqual([found[name] for name in ("iterations", "relative_tolerance", "absolute_tolerance", "warm_start", "post_stabilize")],
+                             [iterations, "0.01", "0.01", "0", "0"])
+
     def test_steps_that_do_not_converge_are_reported(self):
         """One line at the first such step and one with the total; the record has the same counts. A resumed run
         counts each step once and gives the same result."""
@@ -322,6 +331,7 @@ class Simulations(Case):
                 ("dynamics surface_normals=yes is impossible; give 0 or 1", "arch", "--dynamics", "surface_normals=yes"),
                 ("dynamics contact_layer=0.2 is impossible; give a number from 0 to 0.1", "arch", "--dynamics", "contact_layer=0.2"),
                 ("dynamics step has no value", "arch", "--dynamics", "step"),
+                ("unknown setting of dynamics 'papr'; the nearest is 'paper'", "arch", "--dynamics", "papr"),
                 ("asks for 2 cells", "arch", "--set", "k=8,18"),
                 ("a simulation needs contacts", "arch", "--set", "output=count"),
                 ("--resume requires -o FILE", "arch", "--resume"),

@@ -9,6 +9,7 @@
 #include "scenes/hard/hard.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 namespace tandem {
@@ -149,6 +150,9 @@ void print_dynamics() {
     put("\nsettings of simulated motion, --dynamics NAME=VALUE; a scene may have other defaults (--json)\n");
     for (const auto& setting : dynamics_settings())
         put("    {:<20} {:<13} {}\n", setting.name, setting.value(Dynamics{}), setting.help);
+    for (const auto& preset : dynamics_presets())
+        put("    {:<20} {:<13} {}: {}\n", preset.name, "(preset)", preset.help,
+            fmt::join(preset.assignments, ", "));
 }
 
 } // namespace

@@ -88,6 +88,8 @@ Words settings(const LineBefore& before, const std::string& typed) {
 Words dynamics(const std::string& typed) {
     const auto equals = typed.find('=');
     Words texts;
+    if (equals == std::string::npos)
+        for (const auto& preset : dynamics_presets()) texts.emplace_back(preset.name);
     for (const auto& setting : dynamics_settings()) {
         const auto name = std::string(setting.name) + "=";
         if (equals == std::string::npos) texts.push_back(name);

@@ -29,8 +29,10 @@ void add_motion_options(CLI::App& app, SimulateOptions& options) {
         ->check(CLI::Range(std::size_t{1}, std::size_t{100000000}));
     app.add_option("--pictures", options.pictures,
                    "OUT: draw the first, middle and last recorded frame as OUT-0.png, OUT-1.png, OUT-2.png");
-    app.add_option("--dynamics", options.dynamics,
-                   "NAME=VALUE: a setting of the motion (see 'tandem scenes'); may be repeated")
+    app.add_option(
+           "--dynamics", options.dynamics,
+           "NAME=VALUE: a setting of the motion (see 'tandem scenes'), or a preset of them (paper); may be "
+           "repeated")
         ->expected(1)
         ->take_all();
 }
