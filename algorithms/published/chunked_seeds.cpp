@@ -11,16 +11,34 @@ constexpr std::uint64_t seed_words = 3;
 
 } // namespace
 
-std::vector<std::uint32_t> PublishedChunkedWalker::seeds_of_level(std::span<const BodyPair> body_pairs,
-                                                                  std::uint32_t level) const {
-    std::vector<std::uint32_t> seeds;
+/// Calls visit(pair, chunks of a, chunks of b) for each body pair of the level.
+template<class Visit>
+void PublishedChunkedWalker::each_of_level(std::span<const BodyPair> body_pairs, std::uint32_t level,
+                                           Visit visit) const {
     for (std::uint32_t pair = 0; pair < body_pairs.size(); ++pair) {
         const auto [a, b] = body_pairs[pair];
-        if (seed_level(a, b, body_pairs.size()) != level) continue;
-        for (std::uint32_t i = 0; i < trees().levels(a)[level].chunks; ++i)
-            for (std::uint32_t j = 0; j < trees().levels(b)[level].chunks; ++j)
-                seeds.insert(seeds.end(), {pair, i, j});
+        if (seed_level(a, b, body_pairs.size()) == level)
+            visit(pair, trees().levels(a)[level].chunks, trees().levels(b)[level].chunks);
     }
+}
+
+/// Counts first, because a list that grows would copy the seeds several times.
+std::vector<std::uint32_t> PublishedChunkedWalker::seeds_of_level(std::span<const BodyPair> body_pairs,
+                                                                  std::uint32_t level) const {
+    std::uint64_t count = 0;
+    each_of_level(body_pairs, level, [&](std::uint32_t, std::uint32_t chunks_a, std::uint32_t chunks_b) {
+        count += std::uint64_t{chunks_a} * chunks_b;
+    });
+    std::vector<std::uint32_t> seeds(count * seed_words);
+    auto* next = seeds.data();
+    each_of_level(body_pairs, level, [&](std::uint32_t pair, std::uint32_t chunks_a, std::uint32_t chunks_b) {
+        for (std::uint32_t i = 0; i < chunks_a; ++i)
+            for (std::uint32_t j = 0; j < chunks_b; ++j) {
+                *next++ = pair;
+                *next++ = i;
+                *next++ = j;
+            }
+    });
     return seeds;
 }
 

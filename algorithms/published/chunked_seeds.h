@@ -15,6 +15,8 @@ private:
     void do_launch(const WalkTask& task) override;
     bool do_grow(const Status& status) override;
 
+    template<class Visit>
+    void each_of_level(std::span<const BodyPair> pairs, std::uint32_t level, Visit visit) const;
     std::vector<std::uint32_t> seeds_of_level(std::span<const BodyPair> pairs, std::uint32_t level) const;
 
     std::uint64_t wanted_ = 0; ///< seeds that exceeded the capacity of the last launch; 0: none
