@@ -72,7 +72,9 @@ std::vector<const Parameter*> pipeline_parameters(std::span<const Parameter* con
     std::vector<const Parameter*> all(geometry.begin(), geometry.end());
     all.insert(all.end(), {&parameters::builder, &parameters::contact_rule, &parameters::decision,
                            &parameters::broad, &parameters::self, &parameters::body_pair_capacity});
-    if (published) all.insert(all.end(), {&parameters::residency, &parameters::convert});
+    if (published)
+        all.insert(all.end(), {&parameters::residency, &parameters::convert, &parameters::first_body_pair,
+                               &parameters::most_body_pairs});
     all.insert(all.end(), {&parameters::submission, &parameters::output, &parameters::order,
                            &parameters::pair_layout, &parameters::group_size, &parameters::work_items,
                            &parameters::threads, &parameters::pair_capacity, &parameters::contact_capacity});
@@ -82,6 +84,11 @@ std::vector<const Parameter*> pipeline_parameters(std::span<const Parameter* con
 
 bool is_published(const Settings& settings) {
     return settings.has(parameters::residency) && settings[parameters::residency] == Residency::published;
+}
+
+bool walks_part(const Settings& settings) {
+    return settings.has(parameters::first_body_pair)
+           && (settings[parameters::first_body_pair] != 0 || settings[parameters::most_body_pairs] != 0);
 }
 
 void check_local_memory(const Settings& settings, const DeviceInfo& info, std::uint64_t needed,

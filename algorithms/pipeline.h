@@ -16,6 +16,8 @@ std::vector<const Parameter*> pipeline_parameters(std::span<const Parameter* con
 
 /// Whether these settings select the paper's data path.
 bool is_published(const Settings& settings);
+/// Whether a session walks a part of a frame's body pairs (first_body_pair, most_body_pairs).
+bool walks_part(const Settings& settings);
 
 /// Throws InputError if work-groups of these settings need more local memory than the device has. `what`: the
 /// setting that needs it, such as "schedule=group". `remedy`: what the user can do.

@@ -158,6 +158,9 @@ Settings Traversal::fitted(const Settings& settings, const DeviceInfo& info, con
                 "host; leave it out");
     }
     check_motion_settings(settings);
+    if (walks_part(settings) && settings[tandem::parameters::broad] != Broad::sphere_boxes)
+        throw InputError("settings first_body_pair and most_body_pairs need broad=sphere_boxes, whose pairs "
+                         "the reference numbers too; choose it, or leave them out");
     do_fit(fitting, info, scene);
     if (fitting[tandem::parameters::group_size] == 0)
         fitting.set(tandem::parameters::group_size(std::min<std::int64_t>(128, info.max_group_size)));
@@ -167,6 +170,11 @@ Settings Traversal::fitted(const Settings& settings, const DeviceInfo& info, con
 
 void Traversal::check(std::span<Device* const> devices, const Settings& settings) const {
     for (const auto* device : devices) fitted(settings, device->info());
+    if (devices.size() > 1 && walks_part(settings))
+        throw InputError(
+            fmt::format("settings first_body_pair and most_body_pairs are for one device, and {} "
+                        "were named; name one, or leave them out",
+                        names_of(devices)));
     if (devices.size() > 1 && is_published(settings))
         throw InputError(
             fmt::format("{} with residency=published cannot split a frame between {}: the paper's data path "

@@ -15,17 +15,21 @@ BodyPairs::BodyPairs(const BuildContext& context, const Hierarchy& hierarchy, St
       shape_(context.shape),
       bodies_(context.bodies),
       self_(context.settings[parameters::self]),
+      method_(context.settings[parameters::broad]),
       first_capacity_(static_cast<std::uint64_t>(context.settings[parameters::body_pair_capacity])),
       device_(context.device),
       scene_(context.scene),
       geometry_(context.bodies.geometry()),
       writes_(writes),
       rows_(context.device, "body pairs", sizeof(BodyPair), 0) {
-    const auto method = context.settings[parameters::broad];
-    if (method == Broad::device)
+    if (context.settings.has(parameters::first_body_pair)) {
+        first_ = static_cast<std::size_t>(context.settings[parameters::first_body_pair]);
+        most_ = static_cast<std::size_t>(context.settings[parameters::most_body_pairs]);
+    }
+    if (method_ == Broad::device)
         make_stage();
     else
-        broad_.emplace(context.scene, geometry_, method, self_);
+        broad_.emplace(context.scene, geometry_, method_, self_);
 }
 
 void BodyPairs::make_stage() {
@@ -54,6 +58,9 @@ void BodyPairs::begin_on_device(std::optional<std::span<const BodyPair>> given) 
         upload_given(*given);
         return;
     }
+    if (method_ == Broad::sphere_boxes)
+        throw InputError("setting broad=sphere_boxes finds body pairs on the host and the frame is in device "
+                         "memory; choose broad=device, or give body pairs");
     make_stage();
     on_host_ = {};
     searches_ = complete_ = true;
@@ -75,10 +82,19 @@ void BodyPairs::begin(const FrameInput& input, std::optional<std::span<const Bod
             const HostWork work(device_, Stage::broad, "body pairs");
             found_ = broad_->pairs(input);
             std::erase_if(found_, [this](BodyPair pair) { return !contains(pair); });
+            keep_part();
         }
         upload(found_);
-        complete_ = true;
+        complete_ = first_ == 0 && most_ == 0;
     }
+}
+
+/// Keeps the pairs that the settings ask for.
+void BodyPairs::keep_part() {
+    if (first_ == 0 && most_ == 0) return;
+    found_.erase(found_.begin(),
+                 found_.begin() + static_cast<std::ptrdiff_t>(std::min(first_, found_.size())));
+    if (most_ != 0 && most_ < found_.size()) found_.resize(most_);
 }
 
 void BodyPairs::set_subdomain(const Subdomain& subdomain) {

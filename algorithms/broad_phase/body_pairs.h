@@ -23,7 +23,7 @@ public:
     /// 2^32 - 1 pairs.
     void begin(const FrameInput& input, std::optional<std::span<const BodyPair>> given);
     /// Starts a frame in the device's memory, after its refit. Without `given` the device finds the pairs,
-    /// independent of setting broad.
+    /// independent of setting broad. Throws InputError for broad=sphere_boxes, which finds other pairs.
     void begin_on_device(std::optional<std::span<const BodyPair>> given);
     /// Whether begin() has so much work on the host that the device should get earlier commands first.
     bool works_on_host(bool given) const { return !given && (broad_ || !sorted_); }
@@ -54,6 +54,7 @@ public:
 
 private:
     void upload(std::span<const BodyPair> pairs);
+    void keep_part();
     bool contains(BodyPair pair) const;
     void upload_given(std::span<const BodyPair> given);
     void make_stage();
@@ -62,7 +63,9 @@ private:
     LaunchShape shape_;
     const Bodies& bodies_;
     SelfPairs self_;
-    std::uint64_t first_capacity_; ///< initial capacity for pairs that the device finds
+    Broad method_;
+    std::size_t first_ = 0, most_ = 0; ///< settings first_body_pair, most_body_pairs
+    std::uint64_t first_capacity_;     ///< initial capacity for pairs that the device finds
     Device& device_;
     const Scene& scene_;
     Geometry geometry_;

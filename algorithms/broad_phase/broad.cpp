@@ -32,7 +32,10 @@ BroadSweep::BroadSweep(const Scene& scene, const Geometry& geometry, Broad bound
       roundoff_(std::ldexp(1.0, geometry.precision == Precision::fp64 ? -53 : -24)),
       underflow_(underflow(geometry.precision)),
       tolerance_(geometry.rounding == Rounding::published ? published_slack : 0) {
-    for (const auto& d : directions(geometry)) directions_.emplace_back(d[0], d[1], d[2]);
+    if (bound == Broad::sphere_boxes)
+        directions_ = {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()};
+    else
+        for (const auto& d : directions(geometry)) directions_.emplace_back(d[0], d[1], d[2]);
     for (const auto& mesh : scene.meshes) shapes_.push_back(shape_of(mesh.vertices));
     for (std::uint32_t body = 0; body < scene.bodies.size(); ++body)
         if (meets_itself(scene, body, self)) own_.push_back({body, body});
@@ -51,8 +54,8 @@ void BroadSweep::bound_rigid(const Shape& shape, const Pose& pose, double* slabs
     const double slack =
         rounding_steps * roundoff_ * (pose.translation.lpNorm<1>() + 2 * shape.reach) + underflow_;
     for (const auto& d : directions_) {
-        const double reach = bound_ == Broad::sphere ? shape.radius * d.norm()
-                                                     : (rotation.transpose() * d).cwiseAbs().dot(shape.half);
+        const double reach = bound_ == Broad::tight ? (rotation.transpose() * d).cwiseAbs().dot(shape.half)
+                                                    : shape.radius * d.norm();
         const double middle = d.dot(centre);
         const double width = reach * (1 + 8 * std::numeric_limits<double>::epsilon()) + slack * d.lpNorm<1>()
                              + tolerance_ * d.norm();

@@ -11,9 +11,11 @@ namespace tandem {
 /// directions of the geometry, because bounds along other directions could drop pairs with overlapping
 /// k-DOPs. They are widened by the rounding of transform and slabs, so that every pair with overlapping root
 /// k-DOPs is found. Pairs without may_meet() (scenes/scene.h) are excluded. Setting self adds pairs (a, a).
+/// Broad::sphere_boxes is the exception: its bounds are boxes along the coordinate axes, whatever the
+/// geometry is. It finds every pair of bodies that meet, but not every pair with overlapping root k-DOPs.
 class BroadSweep {
 public:
-    /// `bound`: Broad::sphere for the paper's spheres around meshes. Broad::tight for boxes in mesh
+    /// `bound`: Broad::sphere and sphere_boxes for spheres around meshes. Broad::tight for boxes in mesh
     /// coordinates of rigid bodies, and exact slabs of deformable bodies. `scene` must outlive this.
     BroadSweep(const Scene& scene, const Geometry& geometry, Broad bound, SelfPairs self = SelfPairs::off);
 

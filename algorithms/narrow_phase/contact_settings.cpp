@@ -36,9 +36,17 @@ bool contacts_are_equal_for_every_k(const Settings& settings) {
 }
 
 ContactSettings contact_settings_of(const Settings& settings) {
-    const auto self = settings[parameters::self];
-    if (settings[parameters::contact_rule] == ContactRule::none) return {.self = self};
-    return {settings[parameters::contact_rule], settings[parameters::decision], walked_of(settings), self};
+    ContactSettings result{.self = settings[parameters::self],
+                           .within_sphere_boxes = settings[parameters::broad] == Broad::sphere_boxes};
+    if (walks_part(settings)) {
+        result.first_body_pair = static_cast<std::size_t>(settings[parameters::first_body_pair]);
+        result.most_body_pairs = static_cast<std::size_t>(settings[parameters::most_body_pairs]);
+    }
+    if (settings[parameters::contact_rule] == ContactRule::none) return result;
+    result.rule = settings[parameters::contact_rule];
+    result.decision = settings[parameters::decision];
+    result.walked = walked_of(settings);
+    return result;
 }
 
 } // namespace tandem

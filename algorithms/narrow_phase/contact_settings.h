@@ -8,12 +8,15 @@
 namespace tandem {
 
 /// How contacts of a candidate pair are made, how it is decided whether the pair meets, and the tetrahedra
-/// that pairs are found of.
+/// and body pairs that pairs are found of.
 struct ContactSettings {
     ContactRule rule = ContactRule::opposing;
     DecisionPrecision decision = DecisionPrecision::fp32;
     Walked walked = Walked::all;
     SelfPairs self = SelfPairs::off;
+    bool within_sphere_boxes = false; ///< only pairs of bodies whose boxes overlap (broad=sphere_boxes)
+    std::size_t first_body_pair = 0;  ///< the first of these body pairs, in ascending order
+    std::size_t most_body_pairs = 0;  ///< and their number at most; 0: all
 
     bool operator==(const ContactSettings&) const = default;
 };

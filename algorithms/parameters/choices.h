@@ -45,9 +45,10 @@ enum class Origin {
 
 /// Method that finds body pairs.
 enum class Broad {
-    sphere, ///< on the host, by the paper's spheres
-    tight,  ///< on the host, by boxes
-    device  ///< on the device, by root k-DOPs
+    sphere,       ///< on the host, by spheres, along the directions of the k-DOPs
+    sphere_boxes, ///< on the host, by the boxes of spheres along the coordinate axes, as the paper's release
+    tight,        ///< on the host, by boxes
+    device        ///< on the device, by root k-DOPs
 };
 
 /// Bodies whose tetrahedra are also paired with each other, if they share no vertex.

@@ -124,10 +124,21 @@ inline constexpr Setting<DecisionPrecision> decision{
 inline constexpr Setting<Broad> broad{
     "broad",
     Broad::sphere,
-    {{"sphere", Broad::sphere}, {"tight", Broad::tight}, {"device", Broad::device}},
+    {{"sphere", Broad::sphere},
+     {"sphere_boxes", Broad::sphere_boxes},
+     {"tight", Broad::tight},
+     {"device", Broad::device}},
     "",
-    "how to find body pairs: sphere: on the host, by the paper's spheres; tight: on the host, by boxes; "
-    "device: on the device, by root k-DOPs"};
+    "how to find body pairs: sphere: on the host, by spheres; sphere_boxes: on the host, by axis-aligned "
+    "boxes of spheres, as the paper's release, which leaves out candidate pairs that do not meet; tight: on "
+    "the host, by boxes; device: on the device, by root k-DOPs"};
+inline constexpr Setting<std::int64_t> first_body_pair{
+    "first_body_pair", 0, ValueRange{0, word_limit}, "",
+    "broad=sphere_boxes: the first body pair to walk, in ascending order; with most_body_pairs, to measure a "
+    "part of a frame that takes minutes"};
+inline constexpr Setting<std::int64_t> most_body_pairs{
+    "most_body_pairs", 0, ValueRange{0, word_limit}, "",
+    "broad=sphere_boxes: how many body pairs to walk at most; 0: all from first_body_pair on"};
 inline constexpr Setting<SelfPairs> self{
     "self",
     SelfPairs::off,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "harness/plans/key.h"
 
-#include "algorithms/parameters/table.h"
 #include "harness/plans/device_models.h"
 #include "harness/sampling/ranks/rank_team.h"
 
@@ -19,14 +18,18 @@ std::string models_of(const Cell& cell) {
     return models;
 }
 
-/// Settings that came after the first records, which are comparable with records of their defaults.
-constexpr std::array<const Parameter*, 3> later_settings{&parameters::order, &parameters::self,
-                                                         &parameters::motion};
+/// Settings that came after the first records, with the values that these stand for.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 6> later_settings{
+    {{"first_body_pair", "0"},
+     {"most_body_pairs", "0"},
+     {"motion", "none"},
+     {"order", "any"},
+     {"self", "off"},
+     {"sizes", "own"}}};
 
 bool is_later_default(const std::string& name, const std::string& value) {
-    return std::ranges::any_of(later_settings, [&](const Parameter* later) {
-        return later->name == name && later->text(later->initial) == value;
-    });
+    return std::ranges::find(later_settings, std::pair<std::string_view, std::string_view>(name, value))
+           != later_settings.end();
 }
 
 /// "name=value,..." in the order of names.

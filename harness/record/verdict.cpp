@@ -68,6 +68,12 @@ Verdict verdict_of(std::span<const Row> rows, const std::vector<std::size_t>& gr
     return verdict;
 }
 
+/// Whether the broad phase leaves out candidate pairs that others find.
+bool leaves_out_pairs(const SettingTexts& settings) {
+    const auto broad = settings.find("broad");
+    return broad != settings.end() && broad->second == "sphere_boxes";
+}
+
 std::string ratio_text(const RankedCell& cell) {
     const auto& ratio = cell.ratio;
     if (!cell.has_interval())
@@ -86,6 +92,7 @@ bool comparable(const Row& a, const Row& b) {
     };
     if (!is_eligible(a) || !is_eligible(b) || a.cell->devices != b.cell->devices) return false;
     const auto x = a.measurement->settings.texts(), y = b.measurement->settings.texts();
+    if (leaves_out_pairs(x) != leaves_out_pairs(y)) return false;
     return std::ranges::all_of(compared_settings, [&](const char* name) {
         const auto i = x.find(name), j = y.find(name);
         return (i == x.end()) == (j == y.end()) && (i == x.end() || i->second == j->second);

@@ -61,6 +61,8 @@ void each_checked(State& state, const Each& each) {
     each("body_pairs", m.body_pairs);
     each("candidate_pairs", m.candidate_pairs);
     each("contacts", m.contacts);
+    each("dropped_body_pairs", m.dropped_body_pairs);
+    each("dropped_candidate_pairs", m.dropped_candidate_pairs);
     each("walked_tetrahedra", m.walked_tetrahedra);
     each("degenerate", m.degenerate);
     each("without_boundary", m.without_boundary);

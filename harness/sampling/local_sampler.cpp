@@ -81,6 +81,13 @@ ReferenceDigests LocalSampler::expected_digests(std::size_t index) {
     return references_.digests(geometry_, contact_settings_of(out_.settings), index);
 }
 
+void LocalSampler::add_dropped(std::size_t index) {
+    if (!is_first(cell_.team) || !contact_settings_of(out_.settings).within_sphere_boxes) return;
+    const auto expected = expected_digests(index);
+    out_.dropped_body_pairs.push_back(expected.dropped_body_pairs);
+    out_.dropped_candidate_pairs.push_back(expected.dropped_pairs);
+}
+
 /// Truths stores errors by digest, so that it downloads an answer only when no other cell had the same one.
 /// Ranks download collectively, and therefore always.
 void LocalSampler::add_errors(Truths& truths, std::size_t index, const FrameResult& result,
@@ -136,6 +143,7 @@ void LocalSampler::check_answer(std::size_t index, const FrameResult& result, co
             if (const auto expected = expected_digests(index).pairs; result.count == expected.count)
                 digest = expected;
         compare(index, result, digest, contacts);
+        add_dropped(index);
     }
     if (options.truths != nullptr && result.has_pairs() && has_truth(*options.truths))
         add_errors(*options.truths, index, result, digest, contacts,

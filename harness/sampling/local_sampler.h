@@ -26,6 +26,7 @@ private:
     bool makes_contacts() const;
     void compare(std::size_t index, const FrameResult& result, const Digest& digest, const Digest& contacts);
     ReferenceDigests expected_digests(std::size_t index);
+    void add_dropped(std::size_t index);
     void check_answer(std::size_t index, const FrameResult& result, const CheckOptions& options);
     void add_errors(Truths& truths, std::size_t index, const FrameResult& result, const Digest& digest,
                     const Digest& contacts, const Report& report);

@@ -107,7 +107,9 @@ struct Measurement {
     std::vector<RoundConditions> conditions; ///< of every round with samples
     std::vector<std::uint32_t> continued;    ///< first rounds of later runs that resumed the cell
     std::vector<std::uint64_t> body_pairs, candidate_pairs, contacts; ///< [frame]
-    std::uint64_t walked_tetrahedra = 0;                              ///< summed over the bodies
+    /// [frame] left out by broad=sphere_boxes, as the reference counts; empty with other broad phases.
+    std::vector<std::uint64_t> dropped_body_pairs, dropped_candidate_pairs;
+    std::uint64_t walked_tetrahedra = 0; ///< summed over the bodies
     std::uint64_t without_boundary = 0, degenerate = 0, rejected = 0, undecided_by_filter = 0,
                   undecided_by_double = 0;
     std::uint64_t retries = 0, batches = 0;      ///< of the checking replay

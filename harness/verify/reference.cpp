@@ -3,6 +3,7 @@
 
 #include "algorithms/narrow_phase/reference.h"
 #include "algorithms/bodies/self_pairs.h"
+#include "algorithms/broad_phase/broad.h"
 #include "harness/verify/reference_bounds.h"
 #include "base/parallel.h"
 
@@ -149,6 +150,27 @@ std::vector<Pair> of_boundary(const Scene& scene, std::vector<Pair> pairs) {
 
 namespace {
 
+/// Drops the pairs of all other body pairs, and returns their number. `kept` must be sorted.
+std::uint64_t keep_pairs_of(std::span<const BodyPair> kept, std::vector<Pair>& pairs) {
+    return std::erase_if(pairs, [&](const Pair& pair) {
+        return !std::ranges::binary_search(kept, BodyPair{pair.body_a, pair.body_b});
+    });
+}
+
+/// Number of pairs of bodies that may meet, have overlapping bounds, and are not in `kept`, which is sorted.
+template<class Real>
+std::uint64_t count_overlapping(const Scene& scene, const std::vector<Bounds<Real>>& bounds,
+                                const std::vector<BodyPair>& kept) {
+    std::uint64_t count = 0;
+    for (std::uint32_t a = 0; a < bounds.size(); ++a)
+        for (std::uint32_t b = a + 1; b < bounds.size(); ++b)
+            if (overlapping(bounds[a].whole.data(), bounds[b].whole.data(), bounds[a].axes,
+                            bounds[a].published)
+                && may_meet(scene, a, b) && !std::ranges::binary_search(kept, BodyPair{a, b}))
+                ++count;
+    return count;
+}
+
 template<class Real>
 ReferenceAnswer answer_in(const Scene& scene, const FrameInput& input, const Geometry& geometry,
                           bool contacts, Method method, const ContactSettings& settings) {
@@ -183,6 +205,16 @@ ReferenceAnswer answer_in(const Scene& scene, const FrameInput& input, const Geo
     ReferenceAnswer answer;
     for (const auto& part : found) answer.pairs.insert(answer.pairs.end(), part.begin(), part.end());
     if (settings.walked == Walked::boundary) answer.pairs = of_boundary(scene, std::move(answer.pairs));
+    if (settings.within_sphere_boxes) {
+        const auto kept = BroadSweep(scene, geometry, Broad::sphere_boxes, settings.self).pairs(input);
+        answer.dropped_pairs = keep_pairs_of(kept, answer.pairs);
+        answer.dropped_body_pairs = count_overlapping(scene, bounds, kept);
+        const auto from = std::span(kept).subspan(std::min(settings.first_body_pair, kept.size()));
+        if (settings.most_body_pairs != 0)
+            keep_pairs_of(from.first(std::min(settings.most_body_pairs, from.size())), answer.pairs);
+        else if (settings.first_body_pair != 0)
+            keep_pairs_of(from, answer.pairs);
+    }
     answer.digest = digest_of(answer.pairs);
     if (!contacts) return answer;
     std::mutex mutex;

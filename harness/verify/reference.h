@@ -20,6 +20,9 @@ struct ReferenceAnswer {
     std::uint64_t rejected = 0;
     std::uint64_t undecided_by_filter = 0, undecided_by_double = 0;
     Digest contact_digest;
+    /// With settings.within_sphere_boxes: body pairs that are left out although their root k-DOPs overlap,
+    /// and the candidate pairs of these.
+    std::uint64_t dropped_body_pairs = 0, dropped_pairs = 0;
 };
 
 enum class Method {
@@ -30,7 +33,8 @@ enum class Method {
 /// Finds every pair of tetrahedra of different bodies that may meet and whose leaf k-DOPs overlap, and
 /// filters them if settings.walked is not all. With settings.self also those of one body that share no
 /// vertex. With a successor in `input` (motion=linear) k-DOPs contain both frames and the path between.
-/// Runs on all cores, and shares no code with kernels, hierarchies or broad phase.
+/// settings.within_sphere_boxes keeps the body pairs that BroadSweep finds with Broad::sphere_boxes. Runs on
+/// all cores, and shares no other code with kernels, hierarchies or broad phase.
 ReferenceAnswer reference(const Scene& scene, const FrameInput& input, const Geometry& geometry,
                           bool contacts, Method method, const ContactSettings& settings = {});
 

@@ -30,14 +30,17 @@ std::string References::cache_key(const Key& key) const {
     const bool moves = geometry.motion == Motion::linear;
     return fmt::format(
         "frame {:016x}{}, k {} {}, precision {}, rounding {}, placement {}, origin {}, rule {}, "
-        "decision {}, walked {}{}",
+        "decision {}, walked {}{}{}",
         digest_of(*range_.frame(index)),
         moves ? fmt::format(" to {:016x}", digest_of(*range_.frame(index + 1))) : "", geometry.k,
         geometry.coordinate_axes, static_cast<int>(geometry.precision), static_cast<int>(geometry.rounding),
         static_cast<int>(geometry.placement), static_cast<int>(geometry.origin),
         static_cast<int>(contacts.rule), static_cast<int>(contacts.decision),
         static_cast<int>(contacts.walked),
-        contacts.self == SelfPairs::off ? "" : fmt::format(", self {}", static_cast<int>(contacts.self)));
+        contacts.self == SelfPairs::off ? "" : fmt::format(", self {}", static_cast<int>(contacts.self)),
+        contacts.within_sphere_boxes ? fmt::format(", within boxes of spheres from {} at most {}",
+                                                   contacts.first_body_pair, contacts.most_body_pairs)
+                                     : "");
 }
 
 const ReferenceAnswer& References::answer(const Geometry& geometry, const ContactSettings& contacts,
@@ -58,13 +61,18 @@ ReferenceDigests References::digests(const Geometry& geometry, const ContactSett
     const auto text = cache_key(key);
     ReferenceDigests digests;
     const bool is_cached = cache_.take(text, [&](const nlohmann::json& value) {
-        digests = {read_digest(value.at("pairs")), read_digest(value.at("contacts"))};
+        digests = {read_digest(value.at("pairs")), read_digest(value.at("contacts")),
+                   value.at("dropped_body_pairs").get<std::uint64_t>(),
+                   value.at("dropped_pairs").get<std::uint64_t>()};
     });
     if (!is_cached) {
         const auto& computed = answer(geometry, contacts, index);
-        digests = {computed.digest, computed.contact_digest};
-        cache_.keep(text,
-                    {{"pairs", digest_json(digests.pairs)}, {"contacts", digest_json(digests.contacts)}});
+        digests = {computed.digest, computed.contact_digest, computed.dropped_body_pairs,
+                   computed.dropped_pairs};
+        cache_.keep(text, {{"pairs", digest_json(digests.pairs)},
+                           {"contacts", digest_json(digests.contacts)},
+                           {"dropped_body_pairs", digests.dropped_body_pairs},
+                           {"dropped_pairs", digests.dropped_pairs}});
     }
     digests_.emplace_back(key, digests);
     return digests;

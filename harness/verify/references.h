@@ -12,6 +12,7 @@ namespace tandem {
 /// Digests of the reference's answer to one frame.
 struct ReferenceDigests {
     Digest pairs, contacts;
+    std::uint64_t dropped_body_pairs = 0, dropped_pairs = 0; ///< as in ReferenceAnswer
 };
 
 /// Answers of the reference by frame, computed once for each geometry and contact settings. Digests are

@@ -32,9 +32,9 @@ TEST_P(BroadSessions, EveryPresetWithEveryBroadPhase) {
     std::uint64_t cells = 0;
     for (const auto* traversal : algorithms()) {
         for (const auto& p : traversal->presets()) {
-            for (const std::string broad : {"sphere", "tight", "device"}) {
+            for (const std::string broad : {"sphere", "sphere_boxes", "tight", "device"}) {
                 SettingTexts given{{"broad", broad}};
-                if (p.texts().contains("groups")) given["queue_bytes"] = "1048576";
+                if (declares(*traversal, "queue_bytes")) given["queue_bytes"] = "1048576";
                 const auto settings = resolve(traversal->parameters(), p.values, given, traversal->name());
                 const std::array devices{&on};
                 SCOPED_TRACE(fmt::format("{} {}{}", traversal->name(), p.name, text(given)));
@@ -48,8 +48,8 @@ TEST_P(BroadSessions, EveryPresetWithEveryBroadPhase) {
                 const auto session = traversal->prepare(devices, scene, settings);
                 for (std::size_t i = 0; i < scene.frame_count; ++i) {
                     const auto frame = scene.frame(i);
-                    const auto right =
-                        reference(scene, frame, geometry_of(settings), true, Method::brute_force);
+                    const auto right = reference(scene, frame, geometry_of(settings), true,
+                                                 Method::brute_force, contact_settings_of(settings));
                     const auto result = session->run(frame);
                     ASSERT_GT(result.count, 0u);
                     EXPECT_EQ(result.digest(), right.digest);
@@ -62,6 +62,80 @@ TEST_P(BroadSessions, EveryPresetWithEveryBroadPhase) {
         }
     }
     EXPECT_GE(cells, 20u);
+}
+
+/// Bodies of one tetrahedron, moved along the x axis. Its widths along the directions of k = 8 are 4, the
+/// diameter of its sphere is 3.46: bodies 3.7 apart have overlapping k-DOPs, and boxes of spheres that do
+/// not.
+Scene tetrahedra_on_a_line(std::initializer_list<double> positions) {
+    Mesh mesh;
+    mesh.vertices = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+    mesh.tetrahedra = {{0, 1, 2, 3}};
+    complete_mesh(mesh, "one");
+    mesh.name = "one";
+    std::vector<Eigen::Vector3d> frame;
+    for (const double x : positions) frame.emplace_back(x, 0, 0);
+    return still_scene(std::move(mesh), {frame});
+}
+
+/// At k = 8 no direction is a coordinate axis, so that root k-DOPs overlap where boxes of spheres do not. The
+/// pairs of such bodies are left out and counted, and none of them meets.
+TEST_P(BroadSessions, BoxesOfSpheresLeaveOutOnlyPairsThatDoNotMeet) {
+    const auto scene = tetrahedra_on_a_line({0, 3.7, 1});
+    const std::array devices{&device(GetParam())};
+    const auto settings_of_broad = [](const std::string& broad) {
+        return resolve(algorithm("chunked").parameters(), {}, {{"k", "8"}, {"broad", broad}}, "chunked");
+    };
+    const auto boxes = settings_of_broad("sphere_boxes"), spheres = settings_of_broad("sphere");
+    const auto geometry = geometry_of(boxes);
+    const auto within = contact_settings_of(boxes);
+    const auto frame = scene.frame(0);
+    const auto kept = reference(scene, frame, geometry, true, Method::sweep, within);
+    const auto all = reference(scene, frame, geometry, true, Method::sweep);
+    EXPECT_EQ(kept.dropped_body_pairs, 1u);
+    EXPECT_EQ(kept.dropped_pairs, 1u);
+    EXPECT_EQ(kept.pairs.size(), 2u);
+    EXPECT_EQ(all.pairs.size(), 3u);
+    EXPECT_GT(all.contacts, 0u);
+    EXPECT_EQ(kept.contact_digest, all.contact_digest); // exact contacts of the same pairs
+    EXPECT_EQ((reference(scene, frame, geometry, false, Method::brute_force, within).digest), kept.digest);
+    const auto result = algorithm("chunked").prepare(devices, scene, boxes)->run(frame);
+    const auto more = algorithm("chunked").prepare(devices, scene, spheres)->run(frame);
+    EXPECT_EQ(result.digest(), kept.digest);
+    EXPECT_EQ(more.digest(), all.digest);
+    EXPECT_LT(result.body_pairs, more.body_pairs);
+}
+
+/// Parts of a frame's body pairs have together the frame's pairs, and each the reference's.
+TEST_P(BroadSessions, PartsOfAFrameAddUp) {
+    const auto scene = crowd(5, 12, 1.5);
+    const std::array devices{&device(GetParam())};
+    const auto frame = scene.frame(0);
+    const auto answer = [&](const SettingTexts& part) {
+        SettingTexts given{{"broad", "sphere_boxes"}, {"residency", "published"}};
+        given.insert(part.begin(), part.end());
+        const auto settings = resolve(algorithm("chunked").parameters(), {}, given, "chunked");
+        const auto expected = reference(scene, frame, geometry_of(settings), true, Method::brute_force,
+                                        contact_settings_of(settings));
+        auto result = algorithm("chunked").prepare(devices, scene, settings)->run(frame);
+        EXPECT_EQ(result.digest(), expected.digest);
+        EXPECT_EQ(result.contact_digest(), expected.contact_digest);
+        return std::pair{result.body_pairs, expected.digest};
+    };
+    const auto [pairs, whole] = answer({});
+    ASSERT_GT(pairs, 7u);
+    const auto first = answer({{"most_body_pairs", "3"}}), rest = answer({{"first_body_pair", "3"}});
+    const auto middle = answer({{"first_body_pair", "3"}, {"most_body_pairs", "4"}});
+    EXPECT_EQ(first.first, 3u);
+    EXPECT_EQ(middle.first, 4u);
+    EXPECT_EQ(first.first + rest.first, pairs);
+    auto sum = first.second;
+    sum += rest.second;
+    EXPECT_EQ(sum, whole);
+    EXPECT_LT(middle.second.count, rest.second.count);
+    EXPECT_EQ(answer({{"first_body_pair", "1000000"}}).first, 0u);
+    const auto wrong = resolve(algorithm("chunked").parameters(), {}, {{"most_body_pairs", "3"}}, "chunked");
+    EXPECT_TRUE(rejected(algorithm("chunked"), devices, wrong));
 }
 
 /// A buffer that lacks one pair grows once; a buffer of exactly all pairs does not grow.
