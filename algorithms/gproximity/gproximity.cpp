@@ -37,12 +37,18 @@ public:
     std::span<const Counter> counters() const override { return queue_counters(); }
 
 private:
+    void do_fit(Settings& settings, const DeviceInfo& info, const Scene*) const override {
+        fit_group_size(settings, info);
+    }
+
     void do_check(const Settings& settings, const DeviceInfo& info) const override {
         const auto sizes = queue_sizes(settings, info);
         if (settings[tandem::parameters::broad] == Broad::device
             && (sizes.batch != 0 || sizes.upload == QueueUpload::queues))
-            throw InputError("setting broad=device goes with batch=0 and upload=seeds only: the host makes "
-                             "batches and queues, and needs the body pairs for them; choose broad=sphere");
+            throw InputError(
+                "setting broad=device goes with sizes=own, batch=0 and upload=seeds only: the host "
+                "makes "
+                "batches and queues, and needs the body pairs for them; choose broad=sphere");
     }
 
     std::vector<KernelCost> do_costs(const Scene& scene, const Settings& settings) const override {

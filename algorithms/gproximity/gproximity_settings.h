@@ -12,6 +12,8 @@ namespace tandem {
 std::span<const Parameter* const> gproximity_parameters();
 std::span<const Preset> gproximity_presets();
 
+/// What derives sizes that are not given.
+enum class QueueSizing { own, release };
 /// Data that is uploaded to the queues at the start of a batch.
 enum class QueueUpload { seeds, queues };
 /// How the queues are balanced.
@@ -31,6 +33,15 @@ struct QueueSizes {
     QueueUpload upload = QueueUpload::seeds;
     BalanceMethod balance = BalanceMethod::parallel;
 };
+
+/// Sets the group size that sizes=release derives from the device, unless one is given.
+void fit_group_size(Settings& settings, const DeviceInfo& info);
+
+/// Bytes of one array of queues in the paper's release: the largest allocation or a quarter of the memory.
+std::uint64_t released_array_bytes(const DeviceInfo& info);
+
+/// Whether the queues have the size of the release's array (queue_bytes=device).
+bool takes_whole_array(const Settings& settings);
 
 /// `settings` must be fitted. Throws InputError when the local queue does not fit the device or a queue would
 /// have more than MOST_QUEUE_ITEMS.

@@ -3,8 +3,11 @@
 
 #include "algorithms/gproximity/queues.clh"
 #include "algorithms/sources.h"
+#include "base/error.h"
+#include "base/memory.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace tandem {
 
@@ -31,8 +34,27 @@ constexpr std::array all_counters{counters::bvtt_nodes, counters::seeds, balance
 
 std::span<const Counter> queue_counters() { return all_counters; }
 
+namespace {
+
+/// The release allocates three buffers of this size: two arrays of queues and one of pairs. Those of a
+/// processor are in the host's memory, whose free part is known before.
+void refuse_large_array(const BuildContext& context) {
+    const auto& device = context.device;
+    const auto bytes = released_array_bytes(device.info());
+    if (!takes_whole_array(context.settings) || device.info().is_gpu
+        || device.memory_limit() != Device::no_memory_limit || 3 * bytes <= free_memory())
+        return;
+    throw InputError(
+        fmt::format("setting queue_bytes=device stands for {:.2f} GB on {}, and three buffers of "
+                    "this size do not fit; give --set queue_bytes=4194304, or --memory",
+                    static_cast<double>(bytes) / 1e9, device.info().id));
+}
+
+} // namespace
+
 QueueWalker::QueueWalker(const ChunkTrees& trees, const BuildContext& context)
     : trees_(trees), shape_(context.shape), sizes_(queue_sizes(context.settings, context.device.info())) {
+    refuse_large_array(context);
     counts_ = device().allocate(sizes_.groups * 4, "queue counts");
     starts_ = device().allocate((sizes_.groups + 1) * 4, "queue starts");
     totals_ = device().allocate(8, "balance totals");
@@ -73,16 +95,14 @@ bool QueueWalker::do_grow(const Status& status) {
     return true;
 }
 
-/// The release takes min(largest allocation, a quarter of the memory) for one array.
 void QueueWalker::do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const {
-    const auto& info = device().info();
     work[counters::bvtt_nodes.name] += status.counter(STATUS_BVTT_NODES);
     work[counters::seeds.name] += status.counter(STATUS_SEEDS);
     work[balances.name] += balances_;
     work[refills.name] += status.counter(STATUS_REFILLS);
     work[spills.name] += status.counter(STATUS_SPILLS);
     work[own_bytes.name] = queue_bytes();
-    work[published_bytes.name] = std::min(info.max_allocation, info.global_bytes / 4);
+    work[published_bytes.name] = released_array_bytes(device().info());
 }
 
 /// Spreads the roots of body pairs over the queues. The body pairs are already on the device.

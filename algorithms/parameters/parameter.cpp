@@ -50,11 +50,13 @@ std::int64_t Parameter::parse(const std::string& text) const {
         allowed.push_back(word.text);
     }
     std::int64_t number = 0;
-    if (allowed.empty() && parse_integer(text, number) && number >= least && number <= most) return number;
+    if (takes_integers() && parse_integer(text, number) && number >= least && number <= most) return number;
+    const auto listed = fmt::format("{}", fmt::join(allowed, ", "));
     throw InputError(fmt::format("setting {}={} is impossible; {}", name, text,
-                                 allowed.empty()
-                                     ? fmt::format("give an integer from {} to {}", least, most)
-                                     : fmt::format("choose one of {}", fmt::join(allowed, ", "))));
+                                 !takes_integers()
+                                     ? fmt::format("choose one of {}", listed)
+                                     : fmt::format("give an integer from {} to {}{}{}", least, most,
+                                                   allowed.empty() ? "" : ", or ", listed)));
 }
 
 Settings::Settings(std::span<const Parameter* const> parameters) {

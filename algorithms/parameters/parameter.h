@@ -29,13 +29,15 @@ struct Parameter {
     std::int64_t least = 0,                           ///< lowest value of an integer
         most = 0;                                     ///< highest value of an integer
     std::array<Word, 12> words{};                     ///< the first word_count are in use
-    std::size_t word_count = 0;                       ///< 0: any integer from least to most
+    std::size_t word_count = 0;                       ///< 0: integers only
     std::array<std::int64_t, 4> alternative_values{}; ///< the first alternative_count are in use
     std::size_t alternative_count = 0;                ///< at most 4
     std::string_view alternative_setting;             ///< another setting with the same effect; empty: none
 
-    /// The words that are values; empty for an integer.
+    /// The words that are values; empty if only integers are.
     constexpr std::span<const Word> choices() const { return std::span(words).first(word_count); }
+    /// Whether integers from least to most are values.
+    constexpr bool takes_integers() const { return least != most || word_count == 0; }
     /// Values that `--algorithm auto` tries for speed when neither this nor alternative_setting is given.
     /// Combinations that change the answer are left out. Empty: only the user sets it.
     constexpr std::span<const std::int64_t> alternatives() const {
@@ -91,6 +93,15 @@ struct Setting : Parameter {
         if (initial < least || initial > most) throw "a setting's default is out of its range";
     }
 
+    /// The same row of an integer setting with a word for a value out of its range.
+    consteval Setting with_word(std::string_view word, T value) const {
+        auto row = *this;
+        const auto number = static_cast<std::int64_t>(value);
+        if (!takes_integers() || (number >= least && number <= most)) throw "a word stands for an integer";
+        row.words[row.word_count++] = {word, number};
+        return row;
+    }
+
     /// The same row with alternatives(), which must be allowed values.
     consteval Setting with_alternatives(std::initializer_list<T> values,
                                         std::string_view other_setting = {}) const {
@@ -98,7 +109,7 @@ struct Setting : Parameter {
         row.alternative_setting = other_setting;
         for (const auto value : values) {
             const auto number = static_cast<std::int64_t>(value);
-            bool allowed = word_count == 0 && number >= least && number <= most;
+            bool allowed = takes_integers() && number >= least && number <= most;
             for (const auto& word : choices()) allowed = allowed || word.value == number;
             if (!allowed) throw "an alternative of a setting is no value of it";
             row.alternative_values[row.alternative_count++] = number;

@@ -29,10 +29,12 @@ std::vector<std::string> alternatives_of(const Parameter& parameter) {
     return texts;
 }
 
-/// "1..1024", or the list of choices.
+/// "1..1024", the list of choices, or both.
 std::string values_of(const Parameter& parameter) {
-    return parameter.choices().empty() ? fmt::format("{}..{}", parameter.least, parameter.most)
-                                       : fmt::format("{}", fmt::join(words_of(parameter), ", "));
+    auto values = words_of(parameter);
+    if (parameter.takes_integers())
+        values.insert(values.begin(), fmt::format("{}..{}", parameter.least, parameter.most));
+    return fmt::format("{}", fmt::join(values, ", "));
 }
 
 /// The resolved values of all settings in a preset.
@@ -73,15 +75,13 @@ std::string by_preset(const Traversal& traversal, const Parameter& parameter) {
     return fmt::to_string(fmt::join(texts, "; "));
 }
 
-/// A numeric parameter has a range; a parameter of words has choices.
+/// A numeric parameter has a range; a parameter of words has choices; some have both.
 Json parameters_json(std::span<const Parameter* const> parameters) {
     Json json = Json::array();
     for (const auto* p : parameters) {
         Json row{{"name", p->name}, {"default", p->text(p->initial)}, {"help", p->help}};
-        if (p->choices().empty())
-            row["range"] = {p->least, p->most};
-        else
-            row["choices"] = words_of(*p);
+        if (p->takes_integers()) row["range"] = {p->least, p->most};
+        if (!p->choices().empty()) row["choices"] = words_of(*p);
         row["alternatives"] = alternatives_of(*p);
         json.push_back(row);
     }
@@ -153,7 +153,7 @@ void explain_setting(const Traversal& traversal, const Parameter& parameter, con
     };
     put("    {} = {}\n", parameter.name, value);
     put_lines(fmt::format("{:{}}{}", "", indent, parameter.help), indent);
-    line(parameter.choices().empty() ? "range" : "choices", values_of(parameter));
+    line(parameter.takes_integers() ? "range" : "choices", values_of(parameter));
     if (const auto values = by_preset(traversal, parameter); !values.empty()) line("presets", values);
     if (parameter.alternatives().empty()) return;
     const auto tried = fmt::format("{}", fmt::join(alternatives_of(parameter), ", "));

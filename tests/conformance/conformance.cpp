@@ -105,7 +105,7 @@ std::vector<Axis> axes_of(const Traversal& traversal) {
         for (const auto& setting : *settings) axes.push_back(axis_of(setting));
     std::erase_if(axes, [&](const Axis& axis) { return !declares(traversal, axis.front().begin()->first); });
     for (const auto* parameter : traversal.parameters())
-        if (!parameter->choices().empty() && is_own(traversal, *parameter) && !is_listed(parameter->name))
+        if (!parameter->takes_integers() && is_own(traversal, *parameter) && !is_listed(parameter->name))
             axes.push_back(words_of(*parameter));
     return axes;
 }
@@ -120,6 +120,7 @@ std::vector<SettingTexts> possible(const std::vector<SettingTexts>& rows) {
             if (row.contains("residency")) possible["residency"] = "resident";
             if (row.contains("batch")) possible["batch"] = "0";
             if (row.contains("upload")) possible["upload"] = "seeds";
+            if (row.contains("sizes")) possible["sizes"] = "own";
         }
         all.push_back(possible);
         if (possible == row) continue;
