@@ -151,20 +151,21 @@ class CommandLine(Case):
             for parameter in entry["parameters"]:
                 value = entry["presets"][0]["settings"][parameter["name"]]
                 description = " ".join(f"{parameter['name']} = {value} {parameter['help']}".split())
-                values = "choices: " + ", ".join(parameter["choices"]) if "choices" in parameter else "range: {}..{}".format(*parameter["range"])
+                span = ["{}..{}".format(*parameter["range"])] if "range" in parameter else []
+                values = ("range: " if span else "choices: ") + ", ".join(span + parameter.get("choices", []))
                 self.assertIn(f"{description} {values}", flat)
             for counter in entry["counters"]:
                 self.assertIn(" ".join(f"{counter['name']} {counter['meaning']} [{counter['unit']}]".split()), flat)
             only = json.loads(tandem("algorithms", entry["name"], "--json")[1])
             self.assertEqual(only, [entry])
-        self.assertIn("device in grouped, paper; sphere in published", tandem("algorithms", "chunked")[1])
+        self.assertIn("device in grouped, paper; sphere_boxes in published", tandem("algorithms", "chunked")[1])
         self.assertIn("device in resident; sphere where no preset sets it", tandem("algorithms", "tiled")[1])
         self.bad("the nearest is 'tiled'", "algorithms", "chunked", "tild")
         listing = tandem("algorithms")[1]
         self.assertEqual([line for line in listing.splitlines() if len(line) > 100], [])
         self.assertIn("settings, as in preset resident", listing)
         self.assertRegex(listing, r"\n    broad +device +how to find body pairs")
-        self.assertIn("[sphere, tight, device; sphere where no preset sets it]", " ".join(listing.split()))
+        self.assertIn("[sphere, sphere_boxes, tight, device; sphere where no preset sets it]", " ".join(listing.split()))
 
 
 if __name__ == "__main__":

@@ -41,7 +41,7 @@ class Running(Case):
             listed, recorded = (dict(part.split("=") for part in parts[-1].split(",")) for parts in (listed, recorded))
             asked = {name: record["asked"].get(name, value) for name, value in recorded.items()}
             self.assertEqual({name: listed.get(name) for name in recorded}, asked)
-            self.assertLessEqual(set(listed) - set(recorded), {"builder", "convert", "most_seeds", "origin", "pair_layout", "submission"})
+            self.assertLessEqual(set(listed) - set(recorded), {"builder", "convert", "most_seeds", "origin", "pair_layout", "sizes", "submission"})
 
     def test_ranges(self):
         for text, values in (("6..8:2", "6 8"), ("6..26*2", "6 12 24"), ("6,8..12*1.5", "6 8 12"), ("18", "18")):

@@ -171,6 +171,20 @@ std::uint64_t count_overlapping(const Scene& scene, const std::vector<Bounds<Rea
     return count;
 }
 
+/// Keeps the pairs of the body pairs that setting broad=sphere_boxes finds, and of these the part that the
+/// settings name.
+template<class Real>
+void keep_within_boxes(const Scene& scene, const FrameInput& input, const Geometry& geometry,
+                       const ContactSettings& settings, const std::vector<Bounds<Real>>& bounds,
+                       ReferenceAnswer& answer) {
+    const auto kept = BroadSweep(scene, geometry, Broad::sphere_boxes, settings.self).pairs(input);
+    answer.dropped_pairs = keep_pairs_of(kept, answer.pairs);
+    answer.dropped_body_pairs = count_overlapping(scene, bounds, kept);
+    const auto from = std::span(kept).subspan(std::min(settings.first_body_pair, kept.size()));
+    const auto most = settings.most_body_pairs == 0 ? from.size() : settings.most_body_pairs;
+    keep_pairs_of(from.first(std::min(most, from.size())), answer.pairs);
+}
+
 template<class Real>
 ReferenceAnswer answer_in(const Scene& scene, const FrameInput& input, const Geometry& geometry,
                           bool contacts, Method method, const ContactSettings& settings) {
@@ -205,16 +219,7 @@ ReferenceAnswer answer_in(const Scene& scene, const FrameInput& input, const Geo
     ReferenceAnswer answer;
     for (const auto& part : found) answer.pairs.insert(answer.pairs.end(), part.begin(), part.end());
     if (settings.walked == Walked::boundary) answer.pairs = of_boundary(scene, std::move(answer.pairs));
-    if (settings.within_sphere_boxes) {
-        const auto kept = BroadSweep(scene, geometry, Broad::sphere_boxes, settings.self).pairs(input);
-        answer.dropped_pairs = keep_pairs_of(kept, answer.pairs);
-        answer.dropped_body_pairs = count_overlapping(scene, bounds, kept);
-        const auto from = std::span(kept).subspan(std::min(settings.first_body_pair, kept.size()));
-        if (settings.most_body_pairs != 0)
-            keep_pairs_of(from.first(std::min(settings.most_body_pairs, from.size())), answer.pairs);
-        else if (settings.first_body_pair != 0)
-            keep_pairs_of(from, answer.pairs);
-    }
+    if (settings.within_sphere_boxes) keep_within_boxes(scene, input, geometry, settings, bounds, answer);
     answer.digest = digest_of(answer.pairs);
     if (!contacts) return answer;
     std::mutex mutex;

@@ -92,60 +92,68 @@ TEST(Settings, DecisionsWithCertaintyNeedDouble) {
                 HasSubstr("choose one of opposing, published, sat, clip, "));
 }
 
-/// Sizes that the paper's release has on a device, against those of its four GPUs: the release takes
-/// 2048 work-items a unit and a quarter of the local memory for a group.
+/// A GPU with the memory of a K40c.
+DeviceInfo gpu_of(std::uint32_t units, std::uint32_t most_group, std::uint64_t local_bytes) {
+    DeviceInfo info;
+    info.id = "cuda:9";
+    info.is_gpu = info.has_double = true;
+    info.compute_units = units;
+    info.max_group_size = most_group;
+    info.local_bytes = local_bytes;
+    info.global_bytes = 12079595520;
+    info.max_allocation = info.global_bytes / 2;
+    return info;
+}
+
+std::pair<Settings, QueueSizes> sizes_on(const DeviceInfo& info, const std::string& name,
+                                         const SettingTexts& given = {}) {
+    const auto& gproximity = algorithm("gproximity");
+    const auto asked =
+        resolve(gproximity.parameters(), preset(gproximity, name).values, given, gproximity.name());
+    const auto settings = gproximity.fitted(asked, info);
+    return {settings, queue_sizes(settings, info)};
+}
+
+/// Sizes that the paper's release has on a device, against those of the paper's GPUs: the release takes 2048
+/// work-items a unit and a quarter of the local memory for a group.
 TEST(Settings, ReleasedSizesFollowTheDevice) {
     struct Known {
-        std::uint32_t units, most_group;
-        std::uint64_t local_bytes;
-        std::uint32_t groups, group_size, local_queue, initial, idle;
-    };
-    const auto& gproximity = algorithm("gproximity");
-    const auto of = [&](const Known& known, const std::string& preset_name, SettingTexts given) {
         DeviceInfo info;
-        info.id = "cuda:9";
-        info.is_gpu = info.has_double = true;
-        info.compute_units = known.units;
-        info.max_group_size = known.most_group;
-        info.local_bytes = known.local_bytes;
-        info.global_bytes = 12079595520;
-        info.max_allocation = info.global_bytes / 2;
-        const auto chosen = preset(gproximity, preset_name).values;
-        const auto settings =
-            gproximity.fitted(resolve(gproximity.parameters(), chosen, given, "gproximity"), info);
-        return std::pair{settings, queue_sizes(settings, info)};
+        std::uint32_t groups, group_size, local_queue, idle;
     };
-    for (const auto& known : {Known{15, 1024, 49152, 30, 992, 1023, 1023, 664},      // K40c
-                              Known{13, 1024, 49152, 26, 992, 1023, 1023, 664},      // K20c
-                              Known{40, 256, 32768, 320, 256, 682, 682, 171},        // FirePro W8100
-                              Known{132, 1024, 49152, 272, 992, 1023, 1023, 664}}) { // H100, H200
-        const auto [settings, sizes] = of(known, "published", {});
+    for (const auto& known : {Known{gpu_of(15, 1024, 49152), 30, 992, 1023, 664},      // K40c
+                              Known{gpu_of(13, 1024, 49152), 26, 992, 1023, 664},      // K20c
+                              Known{gpu_of(40, 256, 32768), 320, 256, 682, 171},       // FirePro W8100
+                              Known{gpu_of(132, 1024, 49152), 272, 992, 1023, 664}}) { // H100, H200
+        const auto [settings, sizes] = sizes_on(known.info, "published");
         EXPECT_EQ(settings[parameters::group_size], known.group_size);
         EXPECT_EQ(sizes.groups, known.groups);
         EXPECT_EQ(sizes.batch, known.groups);
         EXPECT_EQ(sizes.local_queue, known.local_queue);
-        EXPECT_EQ(sizes.initial_items, known.initial);
+        EXPECT_EQ(sizes.initial_items, known.local_queue);
         EXPECT_EQ(sizes.idle_limit, known.idle);
         EXPECT_EQ(sizes.queue_capacity, 3019898880u / 12 / known.groups); // a quarter of the memory
         EXPECT_EQ(settings.text("queue_bytes"), "device");
-        EXPECT_EQ(of(known, "published", {{"groups", "7"}}).second.groups, 7u);
-        EXPECT_EQ(of(known, "published", {{"queue_bytes", "12000"}, {"groups", "10"}}).second.queue_capacity,
-                  100u);
+        EXPECT_EQ(sizes_on(known.info, "published", {{"groups", "7"}}).second.groups, 7u);
     }
-    // The same as the preset that names the numbers of a K40c.
-    const Known k40c{15, 1024, 49152, 30, 992, 1023, 1023, 664};
-    const auto derived = of(k40c, "published", {}).second, named = of(k40c, "published-k40c", {}).second;
+    // Groups of one work-item, as on device host, have the other sizes of a GPU's groups.
+    EXPECT_EQ(sizes_on(gpu_of(2, 1, 1 << 20), "published").second.groups, 4u);
+}
+
+TEST(Settings, ReleasedSizesEqualThePresetOfTheGpu) {
+    const auto k40c = gpu_of(15, 1024, 49152);
+    const auto derived = sizes_on(k40c, "published").second, named = sizes_on(k40c, "published-k40c").second;
     EXPECT_EQ(derived.groups, named.groups);
     EXPECT_EQ(derived.queue_capacity, named.queue_capacity);
     EXPECT_EQ(derived.initial_items, named.initial_items);
     EXPECT_EQ(derived.idle_limit, named.idle_limit);
+    const SettingTexts small{{"queue_bytes", "12000"}, {"groups", "10"}};
+    EXPECT_EQ(sizes_on(k40c, "published", small).second.queue_capacity, 100u);
     EXPECT_THAT(
         message_of([&] {
-            of(k40c, "published", {{"queue_bytes", "all"}});
+            sizes_on(k40c, "published", {{"queue_bytes", "all"}});
         }),
         HasSubstr("queue_bytes=all is impossible; give an integer from 12 to 1099511627776, or device"));
-    // Groups of one work-item, as on device host, have the other sizes of a GPU's groups.
-    EXPECT_EQ(of({2, 1, 1 << 20, 0, 0, 0, 0, 0}, "published", {}).second.groups, 4u);
 }
 
 /// Values that tiled derives from device and scene; on a GPU, more than six directions depend on both.
