@@ -18,7 +18,7 @@ import unittest
 
 from program import LONG, PROGRAM, Case, sets, tandem, tried
 
-SHORT = {"opencl": 6, "cuda": 9}  # runs per command and kind of failure in the short form
+SHORT = {"opencl": 4, "cuda": 5}  # runs per command and kind of failure in the short form
 FIRST = {"opencl": 1, "cuda": 7}  # first call of the short form: one that opens a device, which must not be tried twice
 MOST = 700  # maximum number of calls: later calls repeat those of a short frame
 LAST = 30  # the last calls close a device and cannot report errors

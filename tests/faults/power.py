@@ -18,7 +18,7 @@ import unittest
 from program import LONG, PROGRAM, Case, sets, tandem, tried
 
 PRELOAD = str(pathlib.Path(os.environ["PRELOAD"]).resolve())  # children run in other folders
-SHORT = 24  # disks per command in the short form, a random selection
+SHORT = 12  # disks per command in the short form, a random selection
 CAPACITIES = sets({name: 4096 for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity")})
 Change = collections.namedtuple("Change", "of what")  # `of`: a file's number or a folder; what: a function of the disk
 State = collections.namedtuple("State", "names files")  # path: number of a file, None for a folder; number: bytes

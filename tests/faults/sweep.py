@@ -23,8 +23,8 @@ CALLS = {"open": "open", "write": "write", "fsync": "fsync", "rename": "rename",
          "large": "all large malloc from one on", "malloc": "malloc"}
 CELLS = ("plan", "check", "accuracy")  # commands with several cells
 LIBRARYS_WORDS = r"std::|::at\b|basic_string|bad_alloc|json\.exception|vector::"
-SHORT = 8  # runs per command and family in the short form, except malloc
-SHORT_MALLOC = 16
+SHORT = 5  # runs per command and family in the short form, except malloc
+SHORT_MALLOC = 10
 HANGS = 60  # seconds until a run counts as hung
 OURS = PROGRAM.name
 # Message of glibc before it aborts because a thread's first object with a destructor finds no memory.
