@@ -56,7 +56,7 @@ class Answers(Case):
         self.assertIn(f"{len(presets) - len(rows)} of {len(presets)} cells left out: setting order=canonical does not go with residency=published", errors[0])
         self.assertFalse(any("published" in row for row in rows), out)
         self.bad("does not go with residency=published", *asked, "--preset", "published")
-        self.bad("is unknown", *asked[:-1], "order=sorted")
+        self.bad("is impossible; choose one of any, canonical", *asked[:-1], "order=sorted")
 
     def test_dumps_agree_with_brute_force(self):
         parts = [bar(4, (0, 0, 0)), bar(3, (0.5, 0.25, 0.375))]
