@@ -131,6 +131,19 @@ def unpaired_ratio(before, after):
     return _ratio(math.log(numpy.median(after)) - math.log(numpy.median(before)), min(len(before), len(after)), logs)
 
 
+def bootstrap_interval(count, statistic):
+    """The 95 % interval of a statistic of `count` independent values. statistic: from RESAMPLES rows of drawn indices to one value for each row."""
+    found = numpy.sort(statistic(_drawn(count)[0]))
+    tail = interval_tail(count)
+    return _quantile(found, tail), _quantile(found, 1 - tail)
+
+
+def ratio_of_sums(before, after):
+    """The sum of `after` over that of `before`, and its 95 % interval. The values are pairs."""
+    before, after = numpy.asarray(before, float), numpy.asarray(after, float)
+    return float(after.sum() / before.sum()), *bootstrap_interval(len(before), lambda rows: after[rows].sum(1) / before[rows].sum(1))
+
+
 def median_interval(values):
     """The 95 % interval of the median of values, computed as the program computes the intervals of its records."""
     values = numpy.sort(numpy.asarray(values, float))
