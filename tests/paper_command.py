@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """paper_command.py PROGRAM SOURCE: tandem paper: steps are listed, run once, resumed and repeated; a failing step is
-reported and does not stop the others. Drawings equal records, including the committed tables and verdicts; bad
-use gives one line."""
+reported and does not stop the others. The committed tables and verdicts equal those of the committed records; in the long
+form, every committed file is drawn again. Bad use gives one line."""
 import csv
 import json
 import os
@@ -10,16 +10,21 @@ import pathlib
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
 
-from program import PROGRAM, SOURCE
+from program import LONG, PROGRAM, SOURCE
+
+sys.path.insert(0, str(SOURCE / "python"))
+from tandem.commands import paper as command
+from tandem.paper import claims, page
+from tandem.paper.folder import Folder
+from tandem.paper.measuring import MeasuredFolder, steps_of
 
 COMMITTED = SOURCE / "results/h200/paper"
 FILES = ["index.html", "claims.csv", *(f"table{i}.csv" for i in range(1, 8)), *(f"figure{i}.{kind}" for i in range(1, 15) for kind in ("svg", "csv"))]
-# drawings of the scenes' surfaces, which are not committed
-RENDERED = {f"figure{i}.{kind}" for i in (1, 2, 6) for kind in ("svg", "csv")}
 
 
 def paper(*words, code=0):
@@ -48,6 +53,7 @@ class Paper(unittest.TestCase):
             for scene in ("funnel", "glasses", "colosseum", "plates", "tower"):
                 self.assertIn(f"cells-{scene}", listed)
             self.assertIn("left", listed.splitlines()[-1])
+            self.assertLessEqual(max(step.seconds for step in steps_of(size, "host", 0)), 480)
 
     def test_bad_use_is_one_line(self):
         for words, says in (((), "no folder"), (("-o", self.folder, "--size", "huge"), "--size huge: give small or full"),
@@ -102,6 +108,14 @@ class Paper(unittest.TestCase):
         self.assertIn("plates", (self.folder / "figure6.csv").read_text())
         self.assertIn("missing", (self.folder / "figure7.csv").read_text())
 
+    def test_a_simulation_resumes_from_its_checkpoint(self):
+        [step] = [step for step in steps_of("small", "host", 0) if step.name == "sim-tower"]
+        folder = MeasuredFolder(self.folder, "small", "host", PROGRAM)
+        self.assertNotIn("--resume", folder.words(step))
+        (self.folder / "tower.frames.checkpoint").touch()
+        self.assertEqual(folder.words(step)[-1], "--resume")
+
+    @unittest.skipUnless(LONG, "simulates")
     def test_a_simulation_resumes_after_a_signal(self):
         step = self.number("sim-tower")
         running = subprocess.Popen([PROGRAM, "paper", *map(str, self.host), "--steps", step, "--measure-only"], stderr=subprocess.PIPE, text=True)
@@ -117,21 +131,36 @@ class Paper(unittest.TestCase):
         lines = [json.loads(line) for line in (self.folder / "records/sim-tower.jsonl").read_text().splitlines()]
         self.assertEqual(sorted({line["step"] for line in lines if line["kind"] == "step"}), list(range(150)))
 
-    def test_committed_tables_equal_the_records_and_markup_is_escaped(self):
-        shutil.copytree(COMMITTED, self.folder)
-        for name in FILES:
-            (self.folder / name).unlink()
+    def equal_files(self, names):
+        for name in names:
+            self.assertEqual((self.folder / name).read_text(), (COMMITTED / name).read_text(), name)
+
+    def test_committed_tables_and_verdicts_equal_the_records(self):
+        self.folder.mkdir()
+        for table in command.all_tables(Folder(COMMITTED)):
+            table.write(self.folder)
+        command.write_claims(self.folder, claims.all_claims(Folder(COMMITTED)))
+        self.equal_files([*(f"table{i}.csv" for i in range(1, 8)), "claims.csv"])
+
+    def test_markup_is_escaped(self):
+        shutil.copytree(COMMITTED, self.folder, ignore=shutil.ignore_patterns("records", "*.svg", "*.png"))
         steps = self.steps()
         steps[0]["says"], steps[0]["command"], steps[0]["exit"] = "<img src=x onerror=alert(1)>", "tandem </code><script>", 3
         (self.folder / "steps.jsonl").write_text("".join(json.dumps(step) + "\n" for step in steps))
-        output = paper("-o", self.folder, "--draw-only").stdout
-        self.assertIn("7 tables", output)
-        for name in (name for name in FILES if name.endswith(".csv") and name not in RENDERED):
-            self.assertEqual((self.folder / name).read_text(), (COMMITTED / name).read_text(), name)
-        page = (self.folder / "index.html").read_text()
-        self.assertNotIn("<img src=x", page)
-        self.assertNotIn("<script", page)
-        self.assertIn("&lt;img src=x", page)
+        folder = Folder(self.folder)
+        page.write(folder, [], [], claims.all_claims(folder))
+        text = (self.folder / "index.html").read_text()
+        self.assertNotIn("<img src=x", text)
+        self.assertNotIn("<script", text)
+        self.assertIn("&lt;img src=x", text)
+
+    @unittest.skipUnless(LONG, "draws every figure")
+    def test_committed_files_are_drawn_again_byte_for_byte(self):
+        shutil.copytree(COMMITTED, self.folder)
+        for name in FILES:
+            (self.folder / name).unlink()
+        self.assertIn("7 tables", paper("-o", self.folder, "--draw-only").stdout)
+        self.equal_files(name for name in FILES if name.endswith(".csv") or name == "index.html")
 
 
 if __name__ == "__main__":

@@ -3,7 +3,6 @@
 Exits with 2 and one error line for bad use and a folder without records, and with 3 if a step failed or a file cannot be written."""
 import argparse
 import csv
-import dataclasses
 
 from ..paper import measuring
 from . import check_packages, print_error
@@ -11,28 +10,53 @@ from . import check_packages, print_error
 PACKAGES = ("matplotlib", "pandas", "scipy")
 
 
-def write_claims(folder, found):
-    from ..paper import claims
-    with open(folder.path / "claims.csv", "w", newline="") as file:
-        writer = csv.DictWriter(file, [field.name for field in dataclasses.fields(claims.Claim)], lineterminator="\n")
+CLAIM_COLUMNS = ("claim", "where", "says", "scene", "verdict", "value", "low", "high", "unit", "paper_low", "paper_high", "samples", "basis", "disturbed", "frames",
+                 "reason", "records")
+
+
+def claim_rows(claim):
+    """One row of claims.csv for each scene, then one for the claim."""
+    fields = {"claim": claim.id, "where": claim.fields["where"], "says": claim.fields["says"]}
+    for line in claim.lines:
+        measured, paper = line.measured, list(line.paper.values())
+        row = {**fields, "scene": line.label, "verdict": line.verdict, "reason": line.reason, "unit": claim.fields.get("unit", ""),
+               "paper_low": min(paper, default=None), "paper_high": max(paper, default=None)}
+        if measured:
+            row |= {name: getattr(measured, name) for name in ("value", "low", "high", "samples", "basis", "disturbed", "frames")}
+            row["records"] = " ".join(measured.records)
+        yield row
+    yield {**fields, "scene": "all", "verdict": claim.verdict}
+
+
+def write_claims(path, found):
+    from ..paper.tables import short
+    with open(path / "claims.csv", "w", newline="") as file:
+        writer = csv.DictWriter(file, CLAIM_COLUMNS, lineterminator="\n")
         writer.writeheader()
-        writer.writerows(map(dataclasses.asdict, found))
+        writer.writerows({name: short(row.get(name)) for name in CLAIM_COLUMNS} for claim in found for row in claim_rows(claim))
+
+
+def all_tables(folder):
+    from ..paper import comparison_tables, simulation_tables, tables
+    return [make(folder) for make in (tables.table1, tables.table2, simulation_tables.table3, comparison_tables.table4, comparison_tables.table5,
+                                      simulation_tables.table6, simulation_tables.table7)]
 
 
 def build(path):
     """Makes all files. Returns a line with their numbers. Raises lines.RecordError, OSError."""
-    from ..paper import claims, figures, page, pictures, tables
+    from ..paper import claims, figures, page, pictures, simulation_figures
     from ..paper.folder import Folder
     folder = Folder(path)
-    made = tables.all_tables(folder)
+    made = all_tables(folder)
     for table in made:
         table.write(folder.path)
-    all_figures = [*pictures.all_pictures(folder), *figures.all_curves(folder)]
+    curves = figures.all_of_frames(folder) | simulation_figures.all_of_simulations(folder)
+    all_figures = [*pictures.all_pictures(folder), *(curves[number] for number in sorted(curves))]
     found = claims.all_claims(folder)
-    write_claims(folder, found)
+    write_claims(folder.path, found)
     page.write(folder, made, all_figures, found)
     gaps = sum(bool(figure.missing) for figure in all_figures)
-    verdicts = ", ".join(f"{sum(claim.verdict == kind for claim in found)} {kind}" for kind in (claims.AGREES, claims.DIFFERS, claims.UNTESTED))
+    verdicts = ", ".join(f"{count} {verdict}" for verdict, count in claims.counts(found).items())
     return f"{folder.path / 'index.html'}: 7 tables, {len(all_figures) - gaps} of {len(all_figures)} figures, claims: {verdicts}"
 
 

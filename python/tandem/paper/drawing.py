@@ -10,6 +10,7 @@ matplotlib.use("svg")
 matplotlib.rcParams.update({"svg.hashsalt": "tandem", "svg.fonttype": "none", "savefig.dpi": 150, "font.size": 9, "legend.frameon": False, "axes.spines.top": False,
                             "axes.spines.right": False, "font.family": "sans-serif"})
 import matplotlib.pyplot as plt
+from matplotlib import ticker
 
 from ..plots import COLOURS, INK, PALE, WINNER
 from .tables import short
@@ -65,9 +66,25 @@ def missing(folder, number, title, why):
     return dataclasses.replace(plot.save(folder, title), missing=why)
 
 
-def name_end(ax, x, y, text, colour):
-    """Writes the name of a curve at its last point, instead of a legend."""
-    ax.annotate(text, (x, y), xytext=(4, 0), textcoords="offset points", va="center", color=colour, fontsize=8)
+def log_axis(axis):
+    """A logarithmic axis with ticks at 1, 2 and 5 of each power of ten if it is short, so that it has several, and without exponents if there is room."""
+    low, high = sorted(axis.get_view_interval())
+    is_short = low > 0 and high / low < 300
+    axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5) if is_short else (1,), numticks=12))
+    if high < 1e6:
+        axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:,.0f}" if value >= 1 else f"{value:g}"))
+    axis.set_minor_locator(ticker.NullLocator())
+
+
+def symlog_axis(ax, threshold):
+    """A vertical axis from 0, linear up to a threshold and logarithmic above."""
+    ax.set_yscale("symlog", linthresh=threshold)
+    ax.set_ylim(bottom=0)
+
+
+def legend_above(ax, ncols):
+    """A legend above the axes, which the layout keeps whole."""
+    ax.legend(ncols=ncols, fontsize=8, loc="lower left", bbox_to_anchor=(0, 1), handlelength=1.2, columnspacing=1.2)
 
 
 def milliseconds(ax):

@@ -1,281 +1,218 @@
 # SPDX-License-Identifier: MIT
-"""Figures 7 to 13 of the paper, and one more, from our records."""
+"""Figures 7, 8 and 12 to 14 from our records of frames, with the paper's numbers of Table 5 beside them."""
 import numpy
 
-from .drawing import COLOUR_OF, COLOURS, INK, PALE, STAGES, WINNER, Plot, milliseconds, missing
-from .folder import SCENES
-from .tables import data_path, pick
+from .drawing import COLOUR_OF, COLOURS, INK, PALE, STAGES, WINNER, Plot, legend_above, log_axis, milliseconds, missing
+from .folder import SCENES, STEPS_OF_TABLES, number, paper_table
+from .methods import found, name_of, names
+from .tables import written
 
-MAX_COSTS = 6  # in Figures 7 and 10, as in the paper
+MAX_COSTS = 6  # as in the paper
+GPU = "K40c"  # of the paper's devices, the one whose launch geometry preset published has
+ROWS_OF_5 = ("transform", "refit", "traverse", "contact", "balance", "preprocess", "postprocess", "read", "write")
 
 
-def published_gproximity(folder):
-    cases = [pick(folder.cases(f"cells-{scene}"), "gproximity", "published") for scene in SCENES]
-    return [case for case in cases if case]
+def published(folder, algorithm):
+    """The published cases of an algorithm, k = 8, by scene."""
+    wanted = {"algorithm": algorithm, "preset": "published", "k": "8"}
+    cases = {scene: found(folder, f"cells-{scene}", scene, wanted) for scene in SCENES}
+    return {scene: case for scene, case in cases.items() if case}
+
+
+def of_paper(algorithm):
+    """({stage: seconds}, launches) of a step of the paper's Table 5 on GPU, by scene."""
+    rows = [row for row in paper_table(5) if row["gpu"] == GPU and row["algorithm"] == algorithm]
+    return {row["scene"]: ({stage: (number(row[f"{stage}_s"]) or 0) / STEPS_OF_TABLES for stage in ROWS_OF_5}, number(row["launches"]) / STEPS_OF_TABLES) for row in rows}
+
+
+def _figure7_rows(cases):
+    """(label, {stage: seconds a frame}, launches a frame, records) of our cells and of the paper, scene by scene."""
+    theirs, rows = of_paper("gproximity"), []
+    for scene, case in cases.items():
+        rows.append((f"{scene}, ours", {stage: case.stage(stage) / case.frames for stage in STAGES}, case.release_launches / case.frames, case.locations[0]))
+        if scene in theirs:
+            rows.append((f"{scene}, paper's {GPU}", *theirs[scene], "results/paper/table5.csv"))
+    return rows
 
 
 def figure7(folder):
     """The six largest costs of gProximity in percent, and its launches."""
-    cases = published_gproximity(folder)
-    if not cases:
+    rows = _figure7_rows(published(folder, "gproximity"))
+    if not rows:
         return missing(folder.path, 7, "gProximity's bottlenecks", "no cell of gProximity published has completed")
-    plot = Plot(7, 2, 2.6)
-    sums = {stage: sum(case.stage(stage) / case.total() for case in cases) for stage in STAGES}
-    costs = sorted(sums, key=sums.get, reverse=True)[:MAX_COSTS]
+    plot = Plot(7, 2, 3.2)
     costs_panel, launches = plot.axes
-    left = numpy.zeros(len(cases))
+    percents = [{stage: 100 * seconds.get(stage, 0) / sum(seconds.values()) for stage in STAGES} for _, seconds, _, _ in rows]
+    costs = sorted(STAGES, key=lambda stage: sum(percent[stage] for percent in percents), reverse=True)[:MAX_COSTS]
+    left = numpy.zeros(len(rows))
     for stage in costs:
-        part = numpy.array([100 * case.stage(stage) / sum(case.stage(name) for name in STAGES) for case in cases])
-        costs_panel.barh(range(len(cases)), part, left=left, color=COLOUR_OF[stage], label=stage, height=0.65)
+        part = numpy.array([percent[stage] for percent in percents])
+        costs_panel.barh(range(len(rows)), part, left=left, color=COLOUR_OF[stage], label=stage, height=0.7)
         left += part
-    costs_panel.set_yticks(range(len(cases)), [case.scene for case in cases])
-    costs_panel.set_xlabel("percent of a frame's stages")
-    costs_panel.invert_yaxis()
-    costs_panel.legend(ncols=6, loc="lower left", bbox_to_anchor=(0, 1), fontsize=8, handlelength=1)
-    for row, case in enumerate(cases):
-        counts = {stage: case.stage(stage, "launches") / case.frames for stage in ("refit", "traverse", "balance", "contact")}
-        start = 0
-        for stage, count in counts.items():
-            launches.barh(row, count, left=start, color=COLOUR_OF[stage], height=0.65)
-            start += count
-        launches.annotate(f" {start:.0f}", (start, row), va="center", fontsize=8)
-        plot.rows += [{"scene": case.scene, "stage": stage, "ms_a_frame": 1e3 * case.stage(stage) / case.frames, "launches_a_frame": counts.get(stage),
-                       "records": case.locations[0]} for stage in STAGES]
-    launches.set_yticks(range(len(cases)), [case.scene for case in cases])
-    launches.set_xlabel("launches a frame")
-    launches.invert_yaxis()
-    worst = max(cases, key=lambda case: case.stage("write") / case.total())
-    first = max(STAGES, key=lambda stage: sums[stage])
-    return plot.save(folder.path, f"gProximity as published: {first} is its largest cost, and write is {100 * worst.stage('write') / worst.total():.0f} % of {worst.scene}")
+    costs_panel.set_xlabel("percent of a frame's stages, the six largest")
+    legend_above(costs_panel, 6)
+    launches.barh(range(len(rows)), [count for _, _, count, _ in rows], color=[PALE if "paper" in label else WINNER for label, *_ in rows], height=0.7)
+    launches.set(xscale="log", xlabel="launches a frame, as the release counts")
+    log_axis(launches.xaxis)
+    for ax in plot.axes:
+        ax.set_yticks(range(len(rows)), [label for label, *_ in rows], fontsize=8)
+        ax.invert_yaxis()
+    for (label, seconds, count, records), percent in zip(rows, percents):
+        plot.rows += [{"scene": label, "stage": stage, "ms_a_frame": 1e3 * seconds.get(stage, 0), "percent": percent[stage], "launches_a_frame": count,
+                       "records": records} for stage in STAGES]
+    spans = {who: [percent["write"] for (label, *_), percent in zip(rows, percents) if who in label] for who in ("ours", "paper")}
+    text = {who: f"{min(own):.0f} to {max(own):.0f} %" for who, own in spans.items() if own}
+    title = f"gProximity as published, with a bounded queue array: write takes {text['ours']} of its stages"
+    return plot.save(folder.path, title + (f", and {text['paper']} on the paper's {GPU} with its whole array" if "paper" in text else ""))
 
 
 def figure8(folder):
-    """Stages of gProximity over frames of one scene."""
-    case = next((case for case in published_gproximity(folder) if case.scene == "funnel"), None)
+    """Stages of gProximity over frames of the funnel; dotted: the paper's means."""
+    case = published(folder, "gproximity").get("funnel")
     if case is None:
         return missing(folder.path, 8, "gProximity over frames", "no cell of gProximity published on funnel has completed")
-    plot = Plot(8, 2, 2.6)
+    plot = Plot(8, 2, 2.9)
     times, launches = plot.axes
+    theirs, _ = of_paper("gproximity")["funnel"]
     tops = {}
     for stage in STAGES:
-        where = "device_ns" if case.stage(stage, "device_ns") else "host_ns"
-        rows = case.per_frame(stage, where)
+        rows = case.per_frame(stage, "device_ns" if case.stage(stage, "device_ns") else "host_ns")
         if not rows or max(value for _, value in rows) == 0:
             continue
         frames, values = zip(*rows)
         values = 1e3 * numpy.array(values)
         times.plot(frames, values, "o-", markersize=3, color=COLOUR_OF[stage], label=stage)
+        if theirs.get(stage):
+            times.axhline(1e3 * theirs[stage], color=COLOUR_OF[stage], linestyle=":", linewidth=1)
         tops[stage] = values.sum()
-        plot.rows += [{"frame": frame, "stage": stage, "ms": value} for frame, value in zip(frames, values)]
+        plot.rows += [{"frame": frame, "stage": stage, "ms": value, "paper_ms": 1e3 * theirs[stage] if stage in theirs else None} for frame, value in zip(frames, values)]
     times.set_yscale("log")
     milliseconds(times)
-    times.legend(ncols=5, fontsize=7, loc="lower left", bbox_to_anchor=(0, 1))
-    counts = sorted((r["frames"]["first"], sum(s["launches"] for s in r["stages"].values()) / (r["frames"]["last"] - r["frames"]["first"] + 1), r) for r in case.records)
-    for first, count, record in counts:
-        launches.plot([first, record["frames"]["last"]], [count, count], "o-", markersize=3, color=WINNER)
-        plot.rows.append({"frame": first, "stage": "launches", "launches": count})
-    launches.set_ylabel("launches a frame")
+    legend_above(times, 6)
+    log_axis(times.yaxis)
+    counts = sorted((r["frames"]["first"], r["frames"]["last"], sum(s["launches"] for s in r["stages"].values()) / (r["frames"]["last"] - r["frames"]["first"] + 1)) for r in case.records)
+    launches.plot([(first + last) / 2 for first, last, _ in counts], [count for *_, count in counts], "o-", markersize=3, color=WINNER)
+    plot.rows += [{"frame": first, "stage": "launches", "launches": count} for first, _, count in counts]
+    launches.set(ylabel="launches a frame", xlabel="frame")
     launches.set_ylim(bottom=0)
-    launches.set_xlabel("frame")
     largest = max(tops, key=tops.get)
-    return plot.save(folder.path, f"gProximity as published, {case.scene}, over frames: {largest} costs most, {tops[largest] / sum(tops.values()):.0%} of all stages")
+    return plot.save(folder.path, f"gProximity as published, {case.scene}, bounded queue array: {largest} takes most, {100 * tops[largest] / sum(tops.values()):.0f} % of all stages "
+                     f"(dotted: means of the paper's {GPU}, whole array, steps 20 to 121)")
 
 
-MIN_RANGE = 4  # smallest ratio of the most to the fewest contacts for which an exponent is meaningful
-
-
-def fit(x, y):
-    """Exponent, factor and R^2 of y = a x^b by least squares of logarithms; None for few points or a small range of contacts."""
-    x, y = numpy.array(x, float), numpy.array(y, float)
-    good = (x > 0) & (y > 0)
-    if good.sum() < 10 or numpy.quantile(x[good], 0.95) < MIN_RANGE * numpy.quantile(x[good], 0.05):
-        return None
-    lx, ly = numpy.log(x[good]), numpy.log(y[good])
-    slope, offset = numpy.polyfit(lx, ly, 1)
-    spread = ((ly - ly.mean()) ** 2).sum()
-    return slope, numpy.exp(offset), 1 - ((ly - slope * lx - offset) ** 2).sum() / spread if spread > 0 else 1.0
-
-
-def device_seconds(simulation):
-    """Seconds of traverse and contact by step."""
-    return [t + c for t, c in zip(simulation.curve("stage:traverse"), simulation.curve("stage:contact"))]
-
-
-def figure9(folder):
-    simulations = folder.simulations("sim-")
-    if not simulations:
-        return missing(folder.path, 9, "Contacts over steps", "no simulation has completed")
-    plot = Plot(9, 2, 2.9)
-    curves, scaling = plot.axes
-    exponents = {}
-    for colour, simulation in zip(COLOURS, simulations):
-        found, times = simulation.curve("contacts_found"), device_seconds(simulation)
-        steps = [step["step"] for step in simulation.steps]
-        curves.plot(steps, found, color=colour, label=simulation.scene)
-        scaling.plot(found, 1e3 * numpy.array(times), ".", color=colour, markersize=3, alpha=0.6)
-        fitted = fit(found, times)
-        if fitted:
-            exponents[simulation.scene] = fitted
-            x = numpy.geomspace(max(min(n for n in found if n > 0), 1), max(found), 30)
-            scaling.plot(x, 1e3 * fitted[1] * x**fitted[0], color=colour, linewidth=1, label=f"{simulation.scene}: contacts^{fitted[0]:.2f}, R² {fitted[2]:.2f}")
-        plot.rows += [{"scene": simulation.scene, "step": step, "contacts": n, "traverse_and_contact_ms": 1e3 * t,
-                       "refit_ms": 1e3 * refit} for step, n, t, refit in zip(steps, found, times, simulation.curve("stage:refit"))]
-    curves.set_yscale("symlog", linthresh=100)
-    curves.set_xlabel("step")
-    curves.set_ylabel("contacts found")
-    curves.legend(fontsize=8, ncols=2)
-    scaling.set(xscale="log", yscale="log", xlabel="contacts found in a step")
-    milliseconds(scaling)
-    scaling.set_ylabel("traverse and contact, ms")
-    scaling.legend(fontsize=8)
-    fits = ", ".join(f"{scene} {values[0]:.2f}" for scene, values in exponents.items())
-    return plot.save(folder.path, f"Time of traversal and contacts over a step's contacts: exponents {fits}" if fits else "Contacts of a step, and the time of traversal and contacts: they change too little for a fit")
-
-
-def costs_of(simulation):
-    """Seconds by part: the stages of contact finding, and the other parts of a step."""
-    parts = {stage: simulation.stage(stage) for stage in STAGES}
-    return parts | {name: simulation.host(name) for name in ("reduce", "assemble", "solve", "move")}
-
-
-def figure10(folder):
-    runs = [run for beginning in ("sim-", "host-", "serial-", "parallel-") for run in folder.simulations(beginning)]
-    runs = sorted(runs, key=lambda run: SCENES.index(run.scene))
-    if not runs:
-        return missing(folder.path, 10, "What simulations cost", "no simulation has completed")
-    plot = Plot(10, 1, 1.2 + 0.33 * len(runs))
-    ax = plot.axes[0]
-    parts = [{name: value / len(run.steps) for name, value in costs_of(run).items()} for run in runs]
-    names = [f"{run.scene}, {run.run['devices'][0]['id']}, {data_path(run)}" for run in runs]
-    shown = set()
-    for row, costs in enumerate(parts):
-        left = 0
-        for name in sorted(costs, key=costs.get, reverse=True)[:MAX_COSTS]:
-            ax.barh(row, 1e3 * costs[name], left=left, color=COLOUR_OF[name], height=0.7, label=None if name in shown else name)
-            shown.add(name)
-            left += 1e3 * costs[name]
-        plot.rows += [{"run": names[row], "cost": name, "ms_a_step": 1e3 * value, "records": runs[row].location} for name, value in costs.items()]
-    ax.set_yticks(range(len(runs)), names, fontsize=8)
-    ax.invert_yaxis()
-    ax.set_xlabel("milliseconds a step, the six largest costs of each")
-    ax.legend(ncols=4, fontsize=8, loc="upper left", bbox_to_anchor=(0, -0.18))
-    first = max(parts[0], key=parts[0].get)
-    return plot.save(folder.path, f"What a step of a simulation costs: {first} is the largest part of {names[0]}")
-
-
-def figure11(folder):
-    pairs = [(folder.simulation(f"sim-{scene}"), folder.simulation(f"host-{scene}")) for scene in ("funnel", "glasses")]
-    runs = [run for pair in pairs for run in pair if run]
-    if not runs:
-        return missing(folder.path, 11, "Stages over steps", "no simulation of funnel or glasses has completed")
-    plot = Plot(11, len(runs), 2.5)
-    growth = []
-    for ax, run in zip(plot.axes, runs):
-        steps = [step["step"] for step in run.steps]
-        curves = {stage: numpy.array(run.curve(f"stage:{stage}")) for stage in STAGES} | {"solve": numpy.array(run.curve("host:solve"))}
-        largest = sorted(curves, key=lambda name: curves[name].sum(), reverse=True)[:MAX_COSTS]
-        for name in largest:
-            ax.plot(steps, 1e3 * curves[name], color=COLOUR_OF[name], label=name, linewidth=1.2)
-        plot.rows += [{"run": f"{run.scene} {run.run['devices'][0]['id']}", "step": step, **{name: 1e3 * values[i] for name, values in curves.items()}}
-                      for i, step in enumerate(steps)]
-        ax.set_title(f"{run.scene}, {run.run['devices'][0]['name']}", fontsize=9, loc="left", color=INK)
-        ax.set_yscale("symlog", linthresh=0.1)
-        milliseconds(ax)
-        ax.legend(ncols=3, fontsize=7)
-        growth.append(f"{largest[0]} for {run.scene} on {run.run['devices'][0]['id']}")
-    plot.axes[len(runs) - 1].set_xlabel("step")
-    return plot.save(folder.path, f"Stages over steps; the largest: {', '.join(growth)}")
+def _launches(folder):
+    """{method: {scene: (launches a frame, records)}}, k = 8: as the release counts, or all kernels of a method that it does not have."""
+    rows = {}
+    for scene in SCENES:
+        for case in folder.cases(f"cells-{scene}") + folder.cases(f"resident-{scene}"):
+            if case.settings.get("k") == "8":
+                count = case.release_launches
+                name = name_of(case) if count is not None else f"{name_of(case)}, all kernels"
+                rows.setdefault(name, {})[scene] = (case.sum("launches") if count is None else count) / case.frames, case.locations[0]
+    for algorithm in ("chunked", "gproximity") if rows else ():
+        rows[f"paper's {GPU}, {algorithm}".replace("gp", "gP")] = {scene: (count, "results/paper/table5.csv") for scene, (_, count) in of_paper(algorithm).items()}
+    return rows
 
 
 def figure12(folder):
-    simulations = folder.simulations("sim-")
-    cases = [case for scene in SCENES for case in folder.cases(f"cells-{scene}") if case.settings.get("k") == "8" and case.release_launches is not None]
-    if not simulations and not cases:
+    simulations, methods = folder.simulations("sim-"), _launches(folder)
+    if not simulations and not methods:
         return missing(folder.path, 12, "Launches", "nothing has completed")
-    plot = Plot(12, 2, 2.8)
+    plot = Plot(12, 2, 3.1)
     curves, bars = plot.axes
-    for colour, simulation in zip(COLOURS, simulations):
-        launches = [sum(stage["launches"] for stage in step["stages"].values()) for step in simulation.steps]
-        steps = [step["step"] for step in simulation.steps]
-        curves.plot(steps, launches, color=colour, label=f"{simulation.scene}, chunked grouped")
-        plot.rows += [{"scene": simulation.scene, "method": "chunked grouped", "step": step, "launches": n} for step, n in zip(steps, launches)]
-    curves.set(xlabel="step", ylabel="launches")
+    for colour, run in zip(COLOURS, simulations):
+        launches = [sum(stage["launches"] for stage in step["stages"].values()) for step in run.steps]
+        curves.plot([step["step"] for step in run.steps], launches, color=colour, label=f"{run.scene}, {run.run['algorithm']} {run.run['preset']}")
+        plot.rows += [{"scene": run.scene, "method": run.method, "step": step["step"], "launches": n} for step, n in zip(run.steps, launches)]
+    curves.set(xlabel="step", ylabel="launches, all kernels")
     curves.set_ylim(bottom=0)
-    curves.legend(fontsize=8, ncols=2, loc="lower left", bbox_to_anchor=(0, 1))
-    methods = list(dict.fromkeys(case.name for case in cases))
-    scenes = [scene for scene in SCENES if any(case.scene == scene for case in cases)]
-    for i, method in enumerate(methods):
-        own = [(scenes.index(case.scene), case.release_launches / case.frames, case) for case in cases if case.name == method]
-        bars.bar([x + 0.2 * (i - 1.5) for x, _, _ in own], [y for _, y, _ in own], width=0.18, color=COLOURS[i % len(COLOURS)], label=method)
-        plot.rows += [{"scene": case.scene, "method": method, "launches": y, "counted": "as theirs", "records": case.locations[0]} for _, y, case in own]
-    bars.set_xticks(range(len(scenes)), scenes)
-    bars.set_ylabel("launches a frame, as theirs")
-    bars.set_yscale("log")
-    bars.legend(fontsize=8, ncols=2, loc="lower left", bbox_to_anchor=(0, 1))
-    largest = max(cases, key=lambda case: case.release_launches / case.frames) if cases else None
-    more = f"; {largest.name} takes up to {largest.release_launches / largest.frames:.0f}, on {largest.scene}" if largest else ""
-    return plot.save(folder.path, f"Launches: chunked takes a few a step, however many contacts there are{more}")
+    legend_above(curves, 2)
+    width = 0.8 / max(len(methods), 1)
+    for i, (method, counts) in enumerate(methods.items()):
+        bars.bar([SCENES.index(scene) + width * (i - (len(methods) - 1) / 2) for scene in counts], [count for count, _ in counts.values()], width=0.9 * width,
+                 color=COLOURS[i % len(COLOURS)], label=method)
+        plot.rows += [{"scene": scene, "method": method, "launches": count, "records": location} for scene, (count, location) in counts.items()]
+    bars.set_xticks(range(len(SCENES)), SCENES)
+    bars.set(ylabel="launches a frame", yscale="log")
+    log_axis(bars.yaxis)
+    legend_above(bars, 3)
+    largest = max(((count, method, scene) for method, counts in methods.items() if "paper's " + GPU not in method for scene, (count, _) in counts.items()), default=None)
+    more = f"; the most are {written(float(round(largest[0])))} of {largest[1]} on {largest[2]}" if largest else ""
+    return plot.save(folder.path, f"Launches of each step of our simulations, and of each method with k = 8{more}")
+
+
+def _thresholds(cases, preset):
+    own = sorted((int(case.settings["seed_threshold"]), case) for case in cases if case.preset == preset)
+    return [value for value, _ in own], [case for _, case in own]
+
+
+def _threshold_panel(ax, x, own):
+    """Draws times over thresholds. Returns the fastest threshold."""
+    for name, colour in (("traverse", COLOUR_OF["traverse"]), ("seed", "#777777"), ("write", COLOUR_OF["write"])):
+        ax.plot(x, [1e3 * case.stage(name) / case.frames for case in own], "o-", color=colour, markersize=4, label=name)
+    median, low, high = (numpy.array([1e3 * case.total(which) / case.frames for case in own]) for which in ("median", "low", "high"))
+    ax.plot(x, median, "o-", color=INK, markersize=4, label="whole frame")
+    ax.fill_between(x, low, high, color=INK, alpha=0.15, linewidth=0)
+    ax.set(xscale="log", yscale="log", xlabel="seed threshold")
+    ax.set_title(name_of(own[0]), fontsize=9, loc="right", color=INK)
+    milliseconds(ax)
+    log_axis(ax.xaxis)
+    log_axis(ax.yaxis)
+    legend_above(ax, 4)
+    best = int(median.argmin())
+    ax.plot(x[best], median[best], "o", color=WINNER, markersize=8, fillstyle="none")
+    return x[best]
 
 
 def figure13(folder):
     cases = folder.cases("thresholds")
-    if not cases:
+    presets = [preset for preset in ("published", "paper", "grouped") if any(case.preset == preset for case in cases)]
+    if not presets:
         return missing(folder.path, 13, "Seed thresholds", "no cell of the sweep has completed")
-    plot = Plot(13, 2, 2.5)
+    plot = Plot(13, len(presets), 2.7)
     minima = []
-    for ax, preset in zip(plot.axes, ("published", "grouped")):
-        own = sorted((int(case.settings["seed_threshold"]), case) for case in cases if case.preset == preset)
-        x = [value for value, _ in own]
-        for name, colour in (("traverse", COLOUR_OF["traverse"]), ("seed", "#777777"), ("write", COLOUR_OF["write"])):
-            ax.plot(x, [1e3 * case.stage(name) / case.frames for _, case in own], "o-", color=colour, markersize=4, label=name)
-        totals = numpy.array([case.total() for _, case in own]) * 1e3
-        frames = numpy.array([case.frames for _, case in own])
-        low, high = (numpy.array([case.total(which) for _, case in own]) * 1e3 for which in ("low", "high"))
-        ax.plot(x, totals / frames, "o-", color=INK, markersize=4, label="whole frame")
-        ax.fill_between(x, low / frames, high / frames, color=INK, alpha=0.15, linewidth=0)
-        ax.set(xscale="log", yscale="log", xlabel="seed threshold")
-        ax.set_title(f"chunked {preset}", fontsize=9, loc="left", color=INK)
-        milliseconds(ax)
-        ax.legend(ncols=4, fontsize=7)
-        if own:
-            best = int((totals / frames).argmin())
-            ax.plot(x[best], totals[best] / frames[best], "o", color=WINNER, markersize=8, fillstyle="none")
-            minima.append(f"{preset} is fastest at {x[best]:.0e}".replace("e+0", "e"))
-        plot.rows += [{"preset": preset, "seed_threshold": value, "traverse_ms": 1e3 * case.stage("traverse") / case.frames,
-                       "whole_ms": 1e3 * case.total() / case.frames, "low_ms": 1e3 * case.total("low") / case.frames,
-                       "high_ms": 1e3 * case.total("high") / case.frames, "seeds": sum(r["work"]["counters"].get("seeds", 0) for r in case.records
-                                                                                      if (r["work"] or {}).get("counters")) / case.frames,
-                       "records": case.locations[0]} for value, case in own]
-    return plot.save(folder.path, f"Seed thresholds on {cases[0].scene}: {'; '.join(minima)}")
+    for ax, preset in zip(plot.axes, presets):
+        x, own = _thresholds(cases, preset)
+        minima.append(f"{name_of(own[0])} at {written(_threshold_panel(ax, x, own))}")
+        plot.rows += [{"method": name_of(case), "seed_threshold": value, "traverse_ms": 1e3 * case.stage("traverse") / case.frames,
+                       "whole_ms": 1e3 * case.total() / case.frames, "low_ms": 1e3 * case.total("low") / case.frames, "high_ms": 1e3 * case.total("high") / case.frames,
+                       "seeds": sum(r["work"]["counters"].get("seeds", 0) for r in case.records if (r["work"] or {}).get("counters")) / case.frames,
+                       "samples": case.rounds, "records": case.locations[0]} for value, case in zip(x, own)]
+    return plot.save(folder.path, f"Seed thresholds on {cases[0].scene}, with the least median: {'; '.join(minima)}")
+
+
+def _chunk_panel(plot, ax, cases, k):
+    """Draws a frame's time over chunk bytes by order. Returns the fastest in words."""
+    own_k = [case for case in cases if case.settings["k"] == k]
+    for colour, order in zip(COLOURS, sorted({case.settings["builder"] for case in own_k})):
+        own = sorted((case for case in own_k if case.settings["builder"] == order), key=lambda case: int(case.settings["chunk_bytes"]))
+        x = [int(case.settings["chunk_bytes"]) for case in own]
+        y, low, high = ([1e3 * case.total(which) / case.frames for case in own] for which in ("median", "low", "high"))
+        ax.fill_between(x, low, high, color=colour, alpha=0.2, linewidth=0)
+        ax.plot(x, y, "o-", color=colour, markersize=4, label=order)
+        plot.rows += [{"k": k, "method": name_of(case), "order": order, "chunk_bytes": bytes_, "ms": ms, "low_ms": l, "high_ms": h, "records": case.locations[0]}
+                      for case, bytes_, ms, l, h in zip(own, x, y, low, high)]
+    ax.set(xscale="log", yscale="log", xlabel="chunk bytes of equation (1)")
+    ax.set_title(f"{name_of(own_k[0])}, k = {k}", fontsize=9, loc="right", color=INK)
+    milliseconds(ax)
+    log_axis(ax.xaxis)
+    log_axis(ax.yaxis)
+    legend_above(ax, 4)
+    best = min(own_k, key=lambda case: case.total() / case.frames)
+    ax.plot(int(best.settings["chunk_bytes"]), 1e3 * best.total() / best.frames, "o", color=WINNER, markersize=9, fillstyle="none")
+    return f"{best.settings['builder']}, {int(best.settings['chunk_bytes']):,} bytes with k = {k}"
 
 
 def figure14(folder):
     """Chunk bytes of equation (1) and orders of tetrahedra. The paper mentions them but does not measure them."""
-    cases = [case for case in folder.cases("chunk-study")]
+    cases = folder.cases("chunk-study")
     if not cases:
         return missing(folder.path, 14, "Chunk bytes and orders of tetrahedra", "no cell of the study has completed")
-    values = sorted({case.settings["k"] for case in cases}, key=int)
-    plot = Plot(14, len(values), 2.8)
-    orders = list(dict.fromkeys(case.settings["builder"] for case in cases))
-    minima = []
-    for ax, k in zip(plot.axes, values):
-        for colour, order in zip(COLOURS, orders):
-            own = sorted((case for case in cases if case.settings["k"] == k and case.settings["builder"] == order), key=lambda case: int(case.settings["chunk_bytes"]))
-            x = [int(case.settings["chunk_bytes"]) for case in own]
-            y, low, high = ([1e3 * case.total(which) / case.frames for case in own] for which in ("median", "low", "high"))
-            ax.fill_between(x, low, high, color=colour, alpha=0.2, linewidth=0)
-            ax.plot(x, y, "o-", color=colour, markersize=4, label=order)
-            plot.rows += [{"k": k, "order": order, "chunk_bytes": bytes_, "ms": ms, "low_ms": l, "high_ms": h, "records": case.locations[0]}
-                          for case, bytes_, ms, l, h in zip(own, x, y, low, high)]
-        ax.set(xscale="log", yscale="log", xlabel="chunk bytes of equation (1)")
-        ax.set_title(f"chunked grouped, k = {k}", fontsize=9, loc="left", color=INK)
-        milliseconds(ax)
-        ax.legend(ncols=4, fontsize=8)
-        best = min((case for case in cases if case.settings["k"] == k), key=lambda case: case.total() / case.frames)
-        ax.plot(int(best.settings["chunk_bytes"]), 1e3 * best.total() / best.frames, "o", color=WINNER, markersize=9, fillstyle="none")
-        minima.append(f"{best.settings['builder']}, {int(best.settings['chunk_bytes']):,} bytes at k = {k}")
-    return plot.save(folder.path, f"Beyond the paper, chunk bytes and orders on {cases[0].scene}: fastest {'; '.join(minima)}")
+    panels = sorted({(case.preset, case.settings["k"]) for case in cases}, key=lambda panel: (panel[0], int(panel[1])))
+    plot = Plot(14, len(panels), 3.0)
+    minima = [_chunk_panel(plot, ax, [case for case in cases if case.preset == preset], k) for ax, (preset, k) in zip(plot.axes, panels)]
+    return plot.save(folder.path, f"Beyond the paper, chunk bytes and orders on {cases[0].scene}, with the least medians: {'; '.join(minima)}")
 
 
-def all_curves(folder):
-    return [make(folder) for make in (figure7, figure8, figure9, figure10, figure11, figure12, figure13, figure14)]
+def all_of_frames(folder):
+    return {int(make.__name__[6:]): make(folder) for make in (figure7, figure8, figure12, figure13, figure14)}

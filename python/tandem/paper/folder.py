@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: MIT
 """Reads a folder of 'tandem paper': steps, cells, simulations, and the paper's own tables."""
+import copy
 import csv
 import json
 import pathlib
 
 from .. import lines
+from .quantities import disturbed_rounds, release_launches, rounds_of
 
 SCENES = ("funnel", "glasses", "colosseum", "plates", "tower")
 STEPS_OF_TABLES = 102  # frames 20 to 121 of the paper's Tables 4 and 5
-# Kernels that the paper's release has too, to count launches as it does. Our refit has a launch for strips and one for tops; our
-# balance has one that plans and one that moves. Our seeds and body pairs have launches where the release works on the host.
-RELEASE_KERNELS = ("transform_vertices", "refit_tops", "traverse", "traverse_in_groups", "traverse_queues", "plan_balance", "generate_contacts")
 
 
 def paper_table(number):
@@ -42,12 +41,17 @@ class MeasuredCells:
         self.status = next((r["status"] for r in records if r["status"] != "ok"), "ok")
         self.scale = STEPS_OF_TABLES / self.frames
 
-    @property
-    def name(self):
-        return f"{self.algorithm} {self.preset}, k = {self.settings.get('k')}"
-
     def total(self, which="median"):
         return sum(r["total_ns"][which] for r in self.records) / 1e9
+
+    def breakdown(self):
+        """Seconds of whole frames in the replays that time every command, of which the stages are parts."""
+        return sum(r["breakdown_ns"]["median"] for r in self.records) / 1e9
+
+    @property
+    def rounds(self):
+        """Number of rounds of each frame, the least of all."""
+        return min(len(rounds_of(r)) for r in self.records)
 
     def stage(self, name, where=None):
         """Sum of a stage. where: device_ns, host_ns, launches, waits or bytes; default: the device's time, or else the host's."""
@@ -69,14 +73,9 @@ class MeasuredCells:
 
     @property
     def release_launches(self):
-        """Launches counted as in the paper's release; None if no kernel exists there."""
-        counts = [r["kernel_times"][name]["launches"] for r in self.records for name in RELEASE_KERNELS if name in (r.get("kernel_times") or {})]
-        return sum(counts) if counts and self.algorithm in ("chunked", "gproximity") else None
-
-    @property
-    def narrow(self):
-        """Seconds of the narrow phase as defined by the paper's Table 3: the whole span without transform, refit and broad phase."""
-        return max(self.total() - sum(self.stage(name) for name in ("transform", "refit", "broad")), 0)
+        """Launches counted as in the paper's release; None if the records have no times of kernels."""
+        counts = [count for count in map(release_launches, self.records) if count is not None]
+        return sum(counts) if counts else None
 
     @property
     def batches(self):
@@ -107,6 +106,16 @@ class Simulation:
     def scene(self):
         return self.run["scene"]["name"]
 
+    @property
+    def method(self):
+        return f"{self.run['algorithm']} {self.run['preset']}, k = {self.run['settings']['k']}"
+
+    def first(self, count):
+        """The same run, of which only the first `count` steps are used."""
+        shorter = copy.copy(self)
+        shorter.steps = self.steps[:count]
+        return shorter
+
     def host(self, name):
         """Seconds of a part on the host; "step" is the total."""
         return sum(step["host_ns"][name] for step in self.steps) / 1e9
@@ -132,7 +141,7 @@ class Folder:
         steps = {step["step"]: step for step in self._json_lines("steps.jsonl")}
         if not steps:
             raise lines.RecordError(f"{path}: has no steps.jsonl; make it with 'tandem paper -o {path}'")
-        self.steps = steps
+        self.steps, self.size = steps, next(iter(steps.values()))["size"]
         self.failed = [name for name, step in steps.items() if step["exit"] != 0]
         self._cases = {}
 
@@ -183,14 +192,26 @@ class Folder:
                     found.append((f"records/{path.name}:{row}", f"{line['status']}: {line.get('failure') or 'its answer differs from the reference'}"))
         return found
 
+    def disturbed(self):
+        """(step, number of disturbed rounds, number of rounds) of the steps with disturbed rounds."""
+        found = []
+        for path in sorted((self.path / "records").glob("*.jsonl")):
+            records = [line for line in self._json_lines(f"records/{path.name}") if line.get("conditions") and line.get("total_ns")]
+            count = sum(len(disturbed_rounds(record)) for record in records)
+            if count:
+                found.append((path.stem, count, sum(len(rounds_of(record)) for record in records)))
+        return found
+
     def simulation(self, step):
-        """The simulation of a step; None if it has not completed."""
+        """The simulation of a step; None if it has not completed, or if its records are gone."""
         if step not in self.named(step):
             return None
-        return Simulation(self._json_lines(f"records/{step}.jsonl"), step, f"records/{step}.jsonl")
+        lines_of_file = self._json_lines(f"records/{step}.jsonl")
+        has_run = any(line["kind"] == "run" for line in lines_of_file)
+        return Simulation(lines_of_file, step, f"records/{step}.jsonl") if has_run else None
 
     def simulations(self, beginning):
-        return [self.simulation(name) for name in self.named(beginning)]
+        return [run for run in map(self.simulation, self.named(beginning)) if run]
 
     def ceilings(self):
         found = self._json_lines("records/ceilings.jsonl")

@@ -183,7 +183,8 @@ class MeasuredFolder:
                 for name in (word, f"{word}.checkpoint"):
                     (self.path / name).unlink(missing_ok=True)
 
-    def _words(self, step):
+    def words(self, step):
+        """The command of a step; a simulation with a checkpoint continues from it."""
         words = [self.program, *step.command]
         if step.command[0] == "simulate" and "-o" in step.command:
             recording = step.command[step.command.index("-o") + 1]
@@ -198,7 +199,7 @@ class MeasuredFolder:
         self.log(step).unlink(missing_ok=True)
         begin = time.monotonic()
         with open(self.log(step), "ab") as log:
-            self.running = subprocess.Popen(self._words(step), cwd=self.path, stdout=log, stderr=log)
+            self.running = subprocess.Popen(self.words(step), cwd=self.path, stdout=log, stderr=log)
             code = self.running.wait()
         self.running = None
         code = 128 - code if code < 0 else code
@@ -226,7 +227,7 @@ def environment_of(program):
 
 def list_steps(folder, steps):
     for number, step in enumerate(steps, 1):
-        print(f"{number:>3}  {step.name:<18} {'done' if folder.is_done(step) else duration_text(step.seconds):>6}  {step.says}")
+        print(f"{number:>3}  {step.name:<18} {'done' if folder.is_done(step) else f'{step.seconds} s':>6}  {step.says}")
     left = sum(step.seconds for step in steps if not folder.is_done(step))
     print(f"about {duration_text(left)} left, with the durations of the committed results")
 

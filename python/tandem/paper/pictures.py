@@ -100,6 +100,10 @@ class Chunks:
         pairs = numpy.triu(inside, 1).sum()
         return pairs / (high.max(0) - low.min(0)).prod()
 
+    def largest(self):
+        """Number of tetrahedra of the largest chunk."""
+        return int(numpy.bincount(self.chunk).max())
+
     def fatness(self):
         """Median over chunks of the ratio of the shortest to the longest side of a box."""
         sides = self.boxes()[:, 1] - self.boxes()[:, 0]

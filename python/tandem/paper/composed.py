@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: MIT
+"""Values that are composed of two measurements, because the whole takes too long: gProximity's batches with its release's whole queue array, and
+steps of a simulation whose frames were measured apart."""
+import math
+import statistics
+
+from .. import resampling
+from .quantities import NotMeasured, disturbed_rounds, frame_range, seconds_by_round
+from .rules import Measured
+
+
+def _uploads_of(cell):
+    """(seconds of the upload of one batch in each undisturbed round, number of disturbed rounds) of a cell with the whole queue array."""
+    if not cell.batches:
+        raise NotMeasured("the cell with the whole queue array has no number of batches")
+    found = [seconds_by_round(record, "stages:write", frame_range(record)) for record in cell.records]
+    clean = [{number: value for number, value in own.items() if number not in disturbed_rounds(record)} for own, record in zip(found, cell.records)]
+    common = sorted(set.intersection(*map(set, clean)))
+    return [sum(own[number] for own in clean) / cell.batches for number in common], sum(map(len, found)) - sum(map(len, clean))
+
+
+def uploads_of(arrays):
+    """The same for several cells, of runs of their own."""
+    found = [_uploads_of(cell) for cell in arrays]
+    return [seconds for uploads, _ in found for seconds in uploads], sum(left_out for _, left_out in found)
+
+
+def middle_sum(cell, name):
+    """Sum over the records of a cell of the median of a time over all rounds."""
+    return sum(statistics.median(seconds_by_round(record, name, frame_range(record)).values() or [0.0]) for record in cell.records)
+
+
+def _with_interval(values, left_out, locations, frames):
+    basis = "uploads of one array, times the number of batches (composed)"
+    if not values:
+        return Measured(math.nan, math.nan, math.nan, 0, left_out, basis, frames, locations)
+    low, high = resampling.median_interval(values) if len(values) > 1 else (values[0], values[0])
+    return Measured(statistics.median(values), low, high, len(values), left_out, basis, frames, locations)
+
+
+def _batches(cell):
+    if not cell.batches:
+        raise NotMeasured("the number of batches was not recorded")
+    return cell.batches
+
+
+def ratio_with_array(other, other_name, own, own_name, arrays):
+    """A time of `other`, with an upload of the whole array for each of its batches, over a time of `own`."""
+    if (other.first, other.last, other.frames) != (own.first, own.last, own.frames):
+        raise NotMeasured("the cells have different frames")
+    uploads, left_out = uploads_of(arrays)
+    base, below = middle_sum(other, other_name), middle_sum(own, own_name)
+    values = [(base + _batches(other) * upload) / below for upload in uploads]
+    return _with_interval(values, left_out, (own.locations[0], other.locations[0], *(cell.locations[0] for cell in arrays)), f"{own.frames} of {own.first}:{own.last}")
+
+
+def share_with_array(other, above_name, below_name, arrays):
+    """A time of a cell over another time of it, both with an upload of the whole array for each batch."""
+    uploads, left_out = uploads_of(arrays)
+    above, below, batches = middle_sum(other, above_name), middle_sum(other, below_name), _batches(other)
+    values = [(above + batches * upload) / (below + batches * upload) for upload in uploads]
+    return _with_interval(values, left_out, (other.locations[0], *(cell.locations[0] for cell in arrays)), f"{other.frames} of {other.first}:{other.last}")
+
+
+def by_frame(cell, name):
+    """Seconds of a time by frame: the median of the rounds."""
+    found = {}
+    for record in cell.records:
+        first, last = frame_range(record)
+        for frame in range(first, last + 1):
+            values = seconds_by_round(record, name, (frame, frame)).values()
+            found[frame] = statistics.median(values) if values else 0.0
+    return found
+
+
+def step_share(cell, above_name, run, parts_above, parts_below):
+    """The share of a part of a simulated step whose contacts are found as the cell does. The other parts are those of the simulation `run`, which
+    found the same contacts. parts_above, parts_below: parts of a step on the host, beside the cell's time and its whole frame."""
+    above, whole = by_frame(cell, above_name), by_frame(cell, "frame")
+    of_run = {step["step"]: step["host_ns"] for step in run.steps}
+    common = sorted(set(whole) & set(of_run))
+    if not common:
+        raise NotMeasured("the simulation has none of the measured frames")
+    parts = lambda frame, names: sum(of_run[frame][name] for name in names) / 1e9
+    found = resampling.ratio_of_sums([whole[f] + parts(f, parts_below) for f in common], [above[f] + parts(f, parts_above) for f in common])
+    disturbed = sum(len(disturbed_rounds(record)) for record in cell.records)
+    return Measured(*found, 0 if disturbed else len(common), disturbed, "frames and steps, one sample each (composed)",
+                    f"{len(common)} steps of {common[0]}:{common[-1]}", (cell.locations[0], run.location))

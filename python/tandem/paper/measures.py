@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: MIT
+"""The measures that claims declare: each takes the fields of a claim and a scene, and returns a Measured, or raises NotMeasured."""
+import json
+import math
+
+import numpy
+import scipy.stats
+
+from .. import resampling
+from . import composed
+from .folder import SCENES
+from .methods import found, names
+from .pictures import chunks_of
+from .quantities import NotMeasured, count_of, frame_range
+from .ratios import ratio_of
+from .rules import Measured, exact
+
+SELECTS_NOT = ("quantity", "cell", "step", "scene", "parts")
+MIN_RANGE = 4  # smallest ratio of the most to the fewest contacts for which times are compared with them
+
+
+class Declared:
+    """A claim's fields, and what they stand for."""
+
+    def __init__(self, fields):
+        self.fields = fields
+
+    def steps(self, side, scene):
+        steps = side.get("step") or self.fields.get("step") or ["cells-{scene}"]
+        return [step.replace("{scene}", scene) for step in ([steps] if isinstance(steps, str) else steps)]
+
+    def wanted(self, side, k, usual=None):
+        """What a cell has to have: algorithm, preset and settings. usual: the name of a cell for sides without one."""
+        name = side.get("cell", usual)
+        return {"k": k, **(names()["cells"][name] if name else {}), **{key: value for key, value in side.items() if key not in SELECTS_NOT}}
+
+    def _first(self, folder, sides, scene, k, usual):
+        """The cells of all sides, from the first step that has them all; None if there is none."""
+        choices = [self.steps(side, scene) for side in sides]
+        for number in range(max(map(len, choices))):
+            cells = [found(folder, steps[min(number, len(steps) - 1)], side.get("scene", scene), self.wanted(side, k, usual)) for side, steps in zip(sides, choices)]
+            if all(cells):
+                return cells
+        return None
+
+    def cells(self, folder, sides, scene, k):
+        """The cells of all sides. Raises NotMeasured."""
+        for usual in self.fields.get("either", [None]):
+            cells = self._first(folder, sides, scene, k, usual)
+            if cells:
+                return self._covering(cells)
+        raise NotMeasured(self.fields.get("without", "no records of the cells that this claim compares"))
+
+    def _covering(self, cells):
+        first, last = self.fields.get("covers", (math.inf, -math.inf))
+        for cell in cells:
+            if cell.first > first or cell.last < last:
+                raise NotMeasured(f"measured in frames {cell.first} to {cell.last}; the paper's are of {last + 1} steps or nearly as many")
+        return cells
+
+    def simulation(self, folder, scene):
+        run = folder.simulation(self.fields["simulation"].replace("{scene}", scene))
+        if run is None:
+            raise NotMeasured("no such simulation has completed")
+        first, last = self.fields.get("covers", (0, 0))
+        if self.fields["measure"] != "composed_step" and (run.steps[0]["step"] > first or run.steps[-1]["step"] < last):
+            raise NotMeasured(f"simulated in {len(run.steps)} steps; the paper's are {last + 1}")
+        return run
+
+
+def ratio(claim, folder, scene, k):
+    above, below = claim.fields["above"], claim.fields["below"]
+    first, second = claim.cells(folder, (above, below), scene, k)
+    return ratio_of(first, above["quantity"], second, below["quantity"])
+
+
+def count(claim, folder, scene, k):
+    side = claim.fields["above"]
+    [cell] = claim.cells(folder, (side,), scene, k)
+    counts = [count_of(record, side["quantity"], frame_range(record)) for record in cell.records]
+    is_scene = side["quantity"] in ("bodies", "tetrahedra")
+    return exact(counts[0] if is_scene else sum(counts), cell.locations[:1], f"{cell.frames} of {cell.first}:{cell.last}")
+
+
+def _arrays(claim, folder):
+    """The cells with the release's whole queue array, one of each step that has it: those with the largest array."""
+    side = claim.fields["array"]
+    preset = claim.wanted(side, "8")["preset"]
+    cells = [case for step in side["step"] for case in folder.cases(step) if case.algorithm == "gproximity" and case.preset == preset]
+    if not cells:
+        raise NotMeasured("no record with the release's whole queue array")
+    size = lambda case: math.inf if case.settings["queue_bytes"] == "device" else int(case.settings["queue_bytes"])
+    return [case for case in cells if size(case) == max(map(size, cells))]
+
+
+def composed_ratio(claim, folder, scene, k):
+    above, below = claim.fields["above"], claim.fields["below"]
+    other, own = claim.cells(folder, (above, below), scene, k)
+    return composed.ratio_with_array(other, above["quantity"], own, below["quantity"], _arrays(claim, folder))
+
+
+def composed_share(claim, folder, scene, k):
+    above, below = claim.fields["above"], claim.fields["below"]
+    [other] = claim.cells(folder, (above,), scene, k)
+    return composed.share_with_array(other, above["quantity"], below["quantity"], _arrays(claim, folder))
+
+
+def composed_step(claim, folder, scene, k):
+    above, below = claim.fields["above"], claim.fields["below"]
+    [cell] = claim.cells(folder, (above,), scene, k)
+    return composed.step_share(cell, above["quantity"], claim.simulation(folder, scene), above["parts"], below["parts"])
+
+
+def digests(claim, folder, scene, k):
+    """Groups of cells with equal frames and bounds, of at least two algorithms and with pairs: the share with equal digests."""
+    groups = {}
+    for step in [f"{kind}-{name}" for name in SCENES for kind in ("cells", "resident")]:
+        for record in [record for case in folder.cases(step) for record in case.records]:
+            digest = (record.get("agreement") or {}).get("digest")
+            if digest and digest["count"]:
+                bounds = [str(record["settings"].get(name)) for name in ("k", "axes", "precision", "rounding", "placement", "broad_boxes")]
+                group = groups.setdefault((record["scene"]["digest"], frame_range(record), *bounds), {})
+                group.setdefault(record["algorithm"], set()).add(json.dumps(digest))
+    compared = [group for group in groups.values() if len(group) > 1]
+    if not compared:
+        raise NotMeasured("no two algorithms have digests of the same frames and bounds, with pairs")
+    equal = sum(len(set.union(*group.values())) == 1 for group in compared)
+    return exact(equal / len(compared), frames=f"{len(compared)} groups")
+
+
+def chunks(claim, folder, scene, k):
+    """A quantity of exported chunks of one order, over that of another."""
+    def of(order):
+        exported = chunks_of(folder, order)
+        if exported is None:
+            raise NotMeasured("chunks have not been exported")
+        return getattr(exported, claim.fields["quantity"])()
+    below = claim.fields.get("below")
+    value = of(claim.fields["above"]) / (of(below) if below else 1)
+    return exact(value, [f"chunks-{order}.csv" for order in (claim.fields["above"], below) if order])
+
+
+def _curve(run, name):
+    """A number for each step: of a field, or the seconds of "stage:A+B"."""
+    kind, _, stages = name.partition(":")
+    return numpy.sum([run.curve(f"stage:{stage}") for stage in stages.split("+")], axis=0) if stages else numpy.array(run.curve(kind), float)
+
+
+def _of_steps(run, value, low, high):
+    return Measured(float(value), float(low), float(high), len(run.steps), 0, "steps of one run", f"{len(run.steps)} steps", (run.location,))
+
+
+def correlation(claim, folder, scene, k):
+    """Spearman's rank correlation over steps, with the interval of Bonett and Wright (2000, Psychometrika 65, equation 3)."""
+    run = claim.simulation(folder, scene)
+    x, y = (_curve(run, name) for name in claim.fields["quantity"])
+    good = (x > 0) & (y > 0)
+    if good.sum() < 10 or numpy.quantile(x[good], 0.95) < MIN_RANGE * numpy.quantile(x[good], 0.05):
+        raise NotMeasured("contacts change less than fourfold")
+    rank = scipy.stats.spearmanr(x, y).statistic
+    half = 1.96 * math.sqrt((1 + rank**2 / 2) / (len(x) - 3))
+    middle = math.atanh(max(-1 + 1e-9, min(rank, 1 - 1e-9)))
+    return _of_steps(run, rank, math.tanh(middle - half), math.tanh(middle + half))
+
+
+def deciles(claim, folder, scene, k):
+    """Ninth over first decile of a time over steps."""
+    run = claim.simulation(folder, scene)
+    values = _curve(run, claim.fields["quantity"])
+    of = lambda rows: numpy.quantile(rows, 0.9, axis=-1) / numpy.quantile(rows, 0.1, axis=-1)
+    return _of_steps(run, of(values), *resampling.bootstrap_interval(len(values), lambda drawn: of(values[drawn])))
+
+
+def median_of_steps(claim, folder, scene, k):
+    run = claim.simulation(folder, scene)
+    return exact(float(numpy.median(_curve(run, claim.fields["quantity"]))), (run.location,), f"{len(run.steps)} steps")
+
+
+MEASURES = {made.__name__: made for made in (ratio, count, composed_ratio, composed_share, composed_step, digests, chunks, correlation, deciles, median_of_steps)}

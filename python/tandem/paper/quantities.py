@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: MIT
+"""Quantities of a record of a cell, by the names that claims use: times in seconds for each round, and counts.
+
+Times: "frame" (whole frames), "breakdown" (whole frames of replays that time every command, of which all stages are parts), "narrow" (the narrow phase of the paper's Table 3: whole frames without transform, refit and broad phase),
+"stages:A+B" (sums of stages: device time, or host time of stages without it), "largest:A+B" (the largest of these stages), "host work:A+B"
+(host work with these names). Counts: "launches", "launches:A+B" of stages, "release launches" (as the paper's release counts), "bytes:A+B",
+"bytes for each launch:A+B" (launches of all stages), "counter:NAME", "contacts", "pairs", "bodies", "tetrahedra"."""
+import statistics
+
+TIMES = ("frame", "breakdown", "narrow", "stages", "largest", "host work")
+# Kernels that the paper's release has too, to count launches as it does. Our refit has a launch for strips and one for tops; our
+# balance has one that plans and one that moves. Our seeds and body pairs have launches where the release works on the host.
+RELEASE_KERNELS = ("transform_vertices", "refit_tops", "traverse", "traverse_in_groups", "traverse_queues", "plan_balance", "generate_contacts")
+BEFORE_NARROW = ("transform", "refit", "broad")
+
+
+class NotMeasured(Exception):
+    """The records lack what a claim needs. The message is the reason for the verdict "untested"."""
+
+
+def is_time(name):
+    return name.partition(":")[0] in TIMES
+
+
+def frame_range(record):
+    return record["frames"]["first"], record["frames"]["last"]
+
+
+def disturbed_rounds(record):
+    """Numbers of the rounds whose samples are doubtful."""
+    return {one["round"] for one in ((record.get("conditions") or {}).get("disturbed") or [])}
+
+
+def rounds_of(record):
+    """Numbers of all rounds with samples, in ascending order."""
+    return sorted(set(record["total_ns"]["rounds"]))
+
+
+def _places(record, frames):
+    """Indices of frames FIRST to LAST in per-frame lists of a record; None for all of its frames."""
+    first, last = frame_range(record)
+    return None if (first, last) == frames else range(frames[0] - first, frames[1] - first + 1)
+
+
+def _whole_frames(record, frames):
+    total, places = record["total_ns"], _places(record, frames)
+    samples = total["samples"] if places is None else [sum(sample[i] for i in places) for sample in total["frames"]]
+    by_round = {}
+    for number, ns in zip(total["rounds"], samples):
+        by_round.setdefault(number, []).append(ns)
+    return {number: statistics.median(own) / 1e9 for number, own in by_round.items()}
+
+
+def _stage(record, name, frames):
+    """Seconds of a stage for each round: replays that time every command are one for each round, in their order."""
+    stage = record["stages"].get(name)
+    if stage is None:
+        return {}
+    times = stage["device_ns"] if stage["device_ns"]["median"] else stage["host_ns"]
+    places = _places(record, frames)
+    samples = times["samples"] if places is None else [sum(times["frames"][i] for i in places)]
+    return {number: ns / 1e9 for number, ns in zip(rounds_of(record), samples)}
+
+
+def _breakdown(record, frames):
+    times, places = record["breakdown_ns"], _places(record, frames)
+    samples = times["samples"] if places is None else [sum(times["frames"][i] for i in places)]
+    return {number: ns / 1e9 for number, ns in zip(rounds_of(record), samples)}
+
+
+def _host_work(record, name, frames):
+    if "host_work" not in record:
+        raise NotMeasured("records of an older program, without the names of host work")
+    if _places(record, frames) is not None:
+        raise NotMeasured("host work is not recorded for each frame")
+    work = record["host_work"].get(name)
+    return {} if work is None else {number: ns / 1e9 for number, ns in zip(rounds_of(record), work["host_ns"]["samples"])}
+
+
+def _combined(parts, combine):
+    """One value for each round that all parts with values have."""
+    known = [part for part in parts if part]
+    if not known:
+        return {}
+    common = set.intersection(*(set(part) for part in known))
+    return {number: combine([part[number] for part in known]) for number in sorted(common)}
+
+
+def seconds_by_round(record, name, frames):
+    """A time by the number of its round, disturbed rounds included; empty if the record has no such stage."""
+    kind, _, rest = name.partition(":")
+    names = rest.split("+")
+    if kind == "frame":
+        return _whole_frames(record, frames)
+    if kind == "breakdown":
+        return _breakdown(record, frames)
+    if kind == "narrow":
+        whole = _whole_frames(record, frames)
+        other = _combined([_stage(record, stage, frames) for stage in BEFORE_NARROW], sum)
+        return {number: max(seconds - other.get(number, 0), 0) for number, seconds in whole.items()}
+    if kind == "host work":
+        return _combined([_host_work(record, work, frames) for work in names], sum)
+    return _combined([_stage(record, stage, frames) for stage in names], max if kind == "largest" else sum)
+
+
+def _in_frames(values, record, frames):
+    if values is None:
+        raise NotMeasured("counts of work were not recorded")
+    places = _places(record, frames)
+    return sum(values if places is None else (values[i] for i in places))
+
+
+def _whole_only(record, frames):
+    if _places(record, frames) is not None:
+        raise NotMeasured("launches and bytes are not recorded for each frame")
+
+
+def release_launches(record):
+    """Launches as the paper's release counts them; None if the record has no times of kernels."""
+    times = record.get("kernel_times")
+    if not times or record["algorithm"] not in ("chunked", "gproximity"):
+        return None
+    return sum(times[name]["launches"] for name in RELEASE_KERNELS if name in times)
+
+
+def _of_stages(record, stages, what):
+    return sum(stage[what] for name, stage in record["stages"].items() if not stages or name in stages)
+
+
+def count_of(record, name, frames):
+    """A count of a record in these frames. Raises NotMeasured."""
+    kind, _, rest = name.partition(":")
+    if kind in ("bodies", "tetrahedra"):
+        return record["scene"][kind]
+    if kind in ("contacts", "pairs"):
+        return _in_frames((record["work"] or {}).get("candidate_pairs" if kind == "pairs" else kind), record, frames)
+    if kind == "bytes for each launch":
+        return _of_stages(record, rest.split("+"), "bytes") / _of_stages(record, (), "launches")
+    _whole_only(record, frames)
+    if kind in ("launches", "bytes"):
+        return _of_stages(record, rest.split("+") if rest else (), kind)
+    found = release_launches(record) if kind == "release launches" else ((record["work"] or {}).get("counters") or {}).get(rest)
+    if found is None:
+        raise NotMeasured("the records have no such count")
+    return found
