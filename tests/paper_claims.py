@@ -210,7 +210,10 @@ class Committed(unittest.TestCase):
                 rounds = sorted(set(line["total_ns"]["rounds"]))
                 line["conditions"] = {"disturbed": [{"round": number, "why": "load"} for number in rounds]}
             return line
-        before, after = self.lines(self.claims), self.lines(self.copy(disturb))
+        found = self.copy(disturb)
+        decided = [(claim.id, line.measured.basis) for claim in found for line in claim.lines if line.verdict in (AGREES, DIFFERS) and not line.measured.is_exact]
+        self.assertEqual({basis for _, basis in decided}, {"steps of one run"}, decided)  # simulations do not record conditions
+        before, after = self.lines(self.claims), self.lines(found)
         changed = {line: (before[line], verdict) for line, verdict in after.items() if verdict != before[line]}
         self.assertGreater(len(changed), 20)
         self.assertEqual({verdict for _, verdict in changed.values()}, {NOT_SETTLED}, changed)
@@ -310,8 +313,8 @@ class Recomputed(unittest.TestCase):
 
     def over_largest(self, own):
         """Preprocess over the largest of the other stages in each frame."""
-        others = ("transform", "refit", "traverse", "contact", "postprocess", "read", "write")
-        largest = sum(max(stage_sum(row, [stage]) for stage in others) for _, row in own.iterrows())
+        rest = ("transform", "refit", "traverse", "contact", "postprocess", "read", "write")
+        largest = sum(max(stage_sum(row, [stage]) for stage in rest) for _, row in own.iterrows())
         return sum(stage_sum(row, ["preprocess"]) for _, row in own.iterrows()) / largest
 
     def test_simulations_and_thresholds(self):

@@ -44,7 +44,7 @@ def all_tables(folder):
 
 def build(path):
     """Makes all files. Returns a line with their numbers. Raises lines.RecordError, OSError."""
-    from ..paper import claims, figures, page, pictures, simulation_figures
+    from ..paper import claims, figures, page, pictures, simulation_figures, summary
     from ..paper.folder import Folder
     folder = Folder(path)
     made = all_tables(folder)
@@ -55,6 +55,7 @@ def build(path):
     found = claims.all_claims(folder)
     write_claims(folder.path, found)
     page.write(folder, made, all_figures, found)
+    summary.write(folder, found)
     gaps = sum(bool(figure.missing) for figure in all_figures)
     verdicts = ", ".join(f"{count} {verdict}" for verdict, count in claims.counts(found).items())
     return f"{folder.path / 'index.html'}: 7 tables, {len(all_figures) - gaps} of {len(all_figures)} figures, claims: {verdicts}"

@@ -178,7 +178,7 @@ def figure13(folder):
                        "whole_ms": 1e3 * case.total() / case.frames, "low_ms": 1e3 * case.total("low") / case.frames, "high_ms": 1e3 * case.total("high") / case.frames,
                        "seeds": sum(r["work"]["counters"].get("seeds", 0) for r in case.records if (r["work"] or {}).get("counters")) / case.frames,
                        "samples": case.rounds, "records": case.locations[0]} for value, case in zip(x, own)]
-    return plot.save(folder.path, f"Seed thresholds on {cases[0].scene}, with the least median: {'; '.join(minima)}")
+    return plot.save(folder.path, f"Seed thresholds on {cases[0].scene}, with the least median: {'; '.join(minima)} (the paper's figure has no numbers)")
 
 
 def _chunk_panel(plot, ax, cases, k):

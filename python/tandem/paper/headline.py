@@ -44,10 +44,10 @@ def _span(values):
 
 def _resident(rows):
     parts = []
-    for name, words in zip([name for name in FOUR if name != "gProximity"], ("the paper's schedule", "our grouped form of it", "tiled")):
+    for name, words in zip([name for name in FOUR if name != "gProximity"], ("the paper's schedule", "ours, grouped,", "tiled")):
         values = [row["ratios"][name].value for row in rows if row["ratios"][name]]
-        parts.append(f"{_span(values)} times as long as {words} ({len(values)} cells)" if values else f"an unmeasured time beside {words}")
-    return f"With everything on the device, gProximity takes {parts[0]}, {parts[1]}, and {parts[2]}."
+        parts.append(f"{_span(values)} times as long as {words}" if values else f"an unmeasured time beside {words}")
+    return f"Resident on the device, gProximity takes {parts[0]}, {parts[1]} and {parts[2]}."
 
 
 def _values(claims, wanted):
@@ -57,7 +57,7 @@ def _values(claims, wanted):
 
 def _published(claims):
     whole, small = _values(claims, "narrow-in-all-cases"), _values(claims, "narrow-small-array")
-    first = (f"As published, gProximity's narrow phase takes {_span(whole)} times as long as chunked's, because it uploads its whole queue array for every batch of 30 body pairs"
+    first = (f"As published, gProximity uploads its whole queue array for every batch, and its narrow phase takes {_span(whole)} times as long as chunked's"
              if whole else "As published, with gProximity's whole queue array, no scene can be judged here")
     return f"{first}; with a bounded array, the factor is {_span(small)}." if small else f"{first}."
 
@@ -66,7 +66,7 @@ def sentences(folder, claims):
     """Three sentences from the records."""
     number = counts(claims)
     verdicts = (f"{number[AGREES]} agree, {number[DIFFERS]} differ, {number[NOT_SETTLED]} are not settled, and {number[UNTESTED]} are untested")
-    return [_resident(four_methods(folder)), _published(claims), f"Of {len(claims)} claims of the paper, {verdicts}."]
+    return [_resident(four_methods(folder)), _published(claims), f"Among {len(claims)} claims of the paper, {verdicts}."]
 
 
 def method_rows(folder):

@@ -55,7 +55,7 @@ class Declared:
         first, last = self.fields.get("covers", (math.inf, -math.inf))
         for cell in cells:
             if cell.first > first or cell.last < last:
-                raise NotMeasured(f"measured in frames {cell.first} to {cell.last}; the paper's are of {last + 1} steps or nearly as many")
+                raise NotMeasured(f"measured in frames {cell.first} to {cell.last}; the paper's 500 steps need {first} to {last}")
         return cells
 
     def simulation(self, folder, scene):

@@ -17,7 +17,7 @@ th, td { border-bottom: 1px solid var(--line); padding: .25rem .5rem; text-align
 td.number { text-align: right; } tr.ours { font-weight: 600; } img { max-width: 100%; height: auto; background: #fff; border-radius: 4px; }
 td ul { list-style: none; margin: 0; padding: 0; } .small { font-size: .8rem; color: var(--pale); }
 .agrees { color: var(--good); font-weight: 700; } .differs { color: var(--bad); font-weight: 700; } .open { color: var(--open); font-weight: 700; }
-nav a { margin-right: .8rem; } figure { margin: 1.5rem 0; } figcaption { font-size: .85rem; color: var(--pale); }
+nav a { margin-right: .8rem; white-space: nowrap; } figure { margin: 1.5rem 0; } figcaption { font-size: .85rem; color: var(--pale); }
 @media (max-width: 44rem) { .claims thead { display: none; } .claims tr, .claims td { display: block; border: 0; padding: .1rem 0; } .claims tr { border-bottom: 1px solid var(--line);
  padding: .6rem 0; } }
 @media print { nav { display: none; } body { max-width: none; font-size: 11pt; } tr, figure { break-inside: avoid; } .wide { overflow: visible; } table { font-size: 7pt; } }
@@ -94,9 +94,9 @@ def _line_html(line, unit):
 
 
 def _together(lines):
-    """Lines with the same reason and no value become one."""
+    """Lines with a value, then the others, of which those with the same reason become one."""
     merged = {}
-    for line in lines:
+    for line in sorted(lines, key=lambda line: line.measured is None):
         merged.setdefault((line.verdict, line.reason) if line.measured is None else id(line), []).append(line)
     return merged.values()
 

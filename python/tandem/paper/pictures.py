@@ -57,7 +57,7 @@ def scenes(folder, number, selected, title):
 
 def figure1(folder):
     simulation = folder.simulation("sim-funnel")
-    contacts = f", {max(simulation.curve('contacts_found')):,} contacts at most" if simulation else ""
+    contacts = f", {max(simulation.curve('contacts_kept')):,} contacts kept at most (the paper: 550,000 on average)" if simulation else ""
     bodies = f"{simulation.run['scene']['bodies']:,} bodies in a funnel" if simulation else "The funnel"
     return scenes(folder, 1, [("funnel", 1.0)], f"{bodies}{contacts}")
 

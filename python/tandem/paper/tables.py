@@ -44,8 +44,9 @@ def written(value, digits=3):
         return "unknown"
     if value == int(value):
         return f"{int(value):,}"
-    places = digits - 1 - math.floor(math.log10(abs(value)))
-    return f"{round(value, places):,.{max(0, places)}f}"
+    places = lambda number: digits - 1 - math.floor(math.log10(abs(number)))
+    rounded = round(value, places(value))
+    return f"{rounded:,.{max(0, places(rounded))}f}"
 
 
 def ratio(above, below):
