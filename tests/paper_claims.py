@@ -139,16 +139,19 @@ class Verdicts(unittest.TestCase):
         self.assertEqual(self.verdict(fields["refit-constant"], "funnel", "8", {}), UNTESTED)
 
     def test_composed_steps_flip(self):
-        """Frames of the published path beside the solver of a simulation of the same steps; fewer steps than the paper's judge nothing."""
+        """Frames of the published path beside the solver of a simulation of the same steps. Fewer steps than the paper's, and steps with other
+        contacts, judge nothing."""
         fields = {one["id"]: one for one in claims.declared()}["collision-share"]
         wanted = Declared(fields).wanted(fields["above"], "8")
-        def files(solve_ns, last=made.FULL_STEPS - 1):
+        def files(solve_ns, last=made.FULL_STEPS - 1, contacts=1):
             cell = made.record("funnel", wanted, 3)
             made.set_quantity(cell, "frame", [10**6 * made.FULL_STEPS] * 3)
             cell["frames"]["last"] = last
-            return {"cells-funnel": [cell], "sim-funnel": made.simulation("funnel", [made.step(i, host={"solve": solve_ns, "assemble": 1, "move": 1, "reduce": 1}) for i in range(made.FULL_STEPS)])}
-        verdicts = [self.verdict(fields, "funnel", "8", files(*arguments)) for arguments in ((1,), (10**7,), (1, 121))]
-        self.assertEqual(verdicts, [AGREES, DIFFERS, UNTESTED])
+            steps = [made.step(i, contacts_found=contacts, host={"solve": solve_ns, "assemble": 1, "move": 1, "reduce": 1}) for i in range(made.FULL_STEPS)]
+            return {"cells-funnel": [cell], "sim-funnel": made.simulation("funnel", steps)}
+        found = [claims.line_of(Declared(fields), self.folder(files(*arguments)), "funnel", "8") for arguments in ((1,), (10**7,), (1, 121), (1, made.FULL_STEPS - 1, 2))]
+        self.assertEqual([line.verdict for line in found], [AGREES, DIFFERS, UNTESTED, UNTESTED])
+        self.assertIn("contacts differ", found[3].reason)
 
     def test_digests_count_where_they_compare(self):
         """One algorithm compares nothing, and neither do answers without pairs."""

@@ -73,15 +73,25 @@ def by_frame(cell, name):
     return found
 
 
+def _check_contacts(cell, steps):
+    """Raises NotMeasured unless the steps found the contacts of the cell's frames, up to the rounding of other bounds."""
+    for record in cell.records:
+        first, _ = frame_range(record)
+        for frame, contacts in enumerate((record["work"] or {}).get("contacts") or [], first):
+            if frame in steps and abs(contacts - steps[frame]["contacts_found"]) > 0.01 * contacts:
+                raise NotMeasured(f"the simulation is another one: its contacts differ in frame {frame}")
+
+
 def step_share(cell, above_name, run, parts_above, parts_below):
     """The share of a part of a simulated step whose contacts are found as the cell does. The other parts are those of the simulation `run`, which
     found the same contacts. parts_above, parts_below: parts of a step on the host, beside the cell's time and its whole frame."""
     above, whole = by_frame(cell, above_name), by_frame(cell, "frame")
-    of_run = {step["step"]: step["host_ns"] for step in run.steps}
-    common = sorted(set(whole) & set(of_run))
+    steps = {step["step"]: step for step in run.steps}
+    common = sorted(set(whole) & set(steps))
     if not common:
         raise NotMeasured("the simulation has none of the measured frames")
-    parts = lambda frame, names: sum(of_run[frame][name] for name in names) / 1e9
+    _check_contacts(cell, steps)
+    parts = lambda frame, names: sum(steps[frame]["host_ns"][name] for name in names) / 1e9
     found = resampling.ratio_of_sums([whole[f] + parts(f, parts_below) for f in common], [above[f] + parts(f, parts_above) for f in common])
     disturbed = sum(len(disturbed_rounds(record)) for record in cell.records)
     return Measured(*found, 0 if disturbed else len(common), disturbed, "frames and steps, one sample each (composed)",
