@@ -18,6 +18,7 @@ sys.path.insert(0, str(SOURCE / "python"))
 import pandas
 
 import paper_records as made
+from tandem import resampling
 from tandem.paper import claims, paper_numbers
 from tandem.paper.folder import Folder
 from tandem.paper.measures import Declared
@@ -100,6 +101,14 @@ class Verdicts(unittest.TestCase):
         self.assertEqual(judged(Measured(9, 9, 9, 1, basis="one sample"), {"at_least": 2}), (NOT_SETTLED, "one sample"))
         self.assertEqual(judged(Measured(9, 9, 9, 0, 3, "rounds"), {"at_least": 2}), (NOT_SETTLED, "disturbed samples only"))
         self.assertEqual(judged(exact(9), {"at_least": 2})[0], AGREES)
+
+    def test_ratios_of_sums(self):
+        before = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
+        self.assertEqual(resampling.ratio_of_sums(before, [2 * value for value in before]), (2, 2, 2))
+        value, low, high = resampling.ratio_of_sums(before, [2.2, 3.6, 6.6, 7.2, 11.0, 10.8])
+        self.assertAlmostEqual(value, 41.4 / 21)
+        self.assertTrue(1.8 - 1e-9 < low < value < high < 2.2 + 1e-9, (low, high))
+        self.assertTrue(all(math.isfinite(end) for end in resampling.ratio_of_sums([0.0] * 5 + [1.0], [1.0] * 6)))
 
     def test_verdicts_of_scenes_become_one(self):
         for verdicts, every, some in (((AGREES, UNTESTED), AGREES, AGREES), ((AGREES, DIFFERS, NOT_SETTLED), DIFFERS, AGREES), ((DIFFERS, NOT_SETTLED), DIFFERS, NOT_SETTLED),

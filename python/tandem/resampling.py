@@ -132,14 +132,16 @@ def unpaired_ratio(before, after):
 
 
 def bootstrap_interval(count, statistic):
-    """The 95 % interval of a statistic of `count` independent values. statistic: from RESAMPLES rows of drawn indices to one value for each row."""
-    found = numpy.sort(statistic(_drawn(count)[0]))
-    tail = interval_tail(count)
+    """The 95 % interval of a statistic of `count` independent values. statistic: from RESAMPLES rows of drawn indices to one value for each row, of
+    which infinite ones are left out."""
+    with numpy.errstate(divide="ignore", invalid="ignore"):
+        found = statistic(_drawn(count)[0])
+    found, tail = numpy.sort(found[numpy.isfinite(found)]), interval_tail(count)
     return _quantile(found, tail), _quantile(found, 1 - tail)
 
 
 def ratio_of_sums(before, after):
-    """The sum of `after` over that of `before`, and its 95 % interval. The values are pairs."""
+    """The sum of `after` over that of `before`, which is not 0, and its 95 % interval. The values are pairs."""
     before, after = numpy.asarray(before, float), numpy.asarray(after, float)
     return float(after.sum() / before.sum()), *bootstrap_interval(len(before), lambda rows: after[rows].sum(1) / before[rows].sum(1))
 
