@@ -48,8 +48,8 @@ def set_quantity(made, name, values):
         made["kernel_times"]["traverse"] = {"launches": values[0]}
     elif kind == "counter":
         made["work"]["counters"][rest] = values[0]
-    elif kind == "contacts":
-        made["work"]["contacts"] = [values[0] / FULL_STEPS] * FULL_STEPS
+    elif kind in ("contacts", "body pairs"):
+        made["work"][kind.replace(" ", "_")] = [values[0] / FULL_STEPS] * FULL_STEPS
     elif kind in ("bodies", "tetrahedra"):
         made["scene"][kind] = values[0]
     else:  # launches and bytes of a stage

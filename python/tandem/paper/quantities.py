@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: MIT
 """Quantities of a record of a cell, by the names that claims use: times in seconds for each round, and counts.
 
-Times: "frame" (whole frames), "breakdown" (whole frames of replays that time every command, of which all stages are parts), "narrow" (the narrow phase of the paper's Table 3: whole frames without transform, refit and broad phase),
-"stages:A+B" (sums of stages: device time, or host time of stages without it), "largest:A+B" (the largest of these stages), "host work:A+B"
-(host work with these names). Counts: "launches", "launches:A+B" of stages, "release launches" (as the paper's release counts), "bytes:A+B",
-"bytes for each launch:A+B" (launches of all stages), "counter:NAME", "contacts", "pairs", "bodies", "tetrahedra"."""
+Times: "frame" (whole frames), "breakdown" (whole frames of replays that time every command, of which all stages are parts), "narrow" (the
+narrow phase of the paper's Table 3: whole frames without transform, refit and broad phase), "stages:A+B" (sums of stages: device time, or
+host time of stages without it), "largest:A+B" (the largest of these stages), "host work:A+B" (host work with these names).
+Counts: "launches", "launches:A+B" of stages, "release launches" (as the paper's release counts), "bytes:A+B", "bytes for each launch:A+B"
+(launches of all stages), "counter:NAME", "contacts", "pairs", "body pairs", "bodies", "tetrahedra"."""
 import statistics
 
+from ..tables.cells import RELEASE_KERNELS
+
 TIMES = ("frame", "breakdown", "narrow", "stages", "largest", "host work")
-# Kernels that the paper's release has too, to count launches as it does. Our refit has a launch for strips and one for tops; our
-# balance has one that plans and one that moves. Our seeds and body pairs have launches where the release works on the host.
-RELEASE_KERNELS = ("transform_vertices", "refit_tops", "traverse", "traverse_in_groups", "traverse_queues", "plan_balance", "generate_contacts")
+LISTS = {"contacts": "contacts", "pairs": "candidate_pairs", "body pairs": "body_pairs"}  # fields of `work` with a count for each frame
 BEFORE_NARROW = ("transform", "refit", "broad")
 
 
@@ -132,8 +133,8 @@ def count_of(record, name, frames):
     kind, _, rest = name.partition(":")
     if kind in ("bodies", "tetrahedra"):
         return record["scene"][kind]
-    if kind in ("contacts", "pairs"):
-        return _in_frames((record["work"] or {}).get("candidate_pairs" if kind == "pairs" else kind), record, frames)
+    if kind in LISTS:
+        return _in_frames((record["work"] or {}).get(LISTS[kind]), record, frames)
     if kind == "bytes for each launch":
         return _of_stages(record, rest.split("+"), "bytes") / _of_stages(record, (), "launches")
     _whole_only(record, frames)
