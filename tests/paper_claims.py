@@ -165,11 +165,11 @@ class Verdicts(unittest.TestCase):
     def test_digests_count_where_they_compare(self):
         """One algorithm compares nothing, and neither do answers without pairs."""
         fields = {one["id"]: one for one in claims.declared()}["same-pairs"]
-        def cell(algorithm, count, a):
-            record = made.record("plates", {"algorithm": algorithm, "preset": "fair", "k": "8"}, 1)
+        def cell(algorithm, count, a, broad="device"):
+            record = made.record("plates", {"algorithm": algorithm, "preset": "fair", "k": "8", "broad": broad}, 1)
             return {**record, "agreement": {"digest": {"count": count, "a": a, "b": ""}}}
         for cells, verdict in (([cell("chunked", 1, "x"), cell("gproximity", 1, "x")], AGREES), ([cell("chunked", 1, "x"), cell("gproximity", 1, "y")], DIFFERS),
-                               ([cell("chunked", 1, "x")], UNTESTED), ([cell("chunked", 0, "x"), cell("gproximity", 0, "x")], UNTESTED)):
+                               ([cell("chunked", 1, "x")], UNTESTED), ([cell("chunked", 1, "x"), cell("gproximity", 1, "y", "sphere_boxes")], UNTESTED), ([cell("chunked", 0, "x"), cell("gproximity", 0, "x")], UNTESTED)):
             self.assertEqual(self.verdict(fields, "", "8", {"cells-plates": cells}), verdict)
 
     def test_one_round_and_disturbed_rounds_settle_nothing(self):

@@ -118,7 +118,9 @@ def digests(claim, folder, scene, k):
         for record in [record for case in folder.cases(step) for record in case.records]:
             digest = (record.get("agreement") or {}).get("digest")
             if digest and digest["count"]:
-                bounds = [str(record["settings"].get(name)) for name in ("k", "axes", "precision", "rounding", "placement", "broad_boxes")]
+                own = record["settings"]
+                # Boxes of spheres may leave out pairs of bodies that other broad phases keep.
+                bounds = [*(str(own.get(name)) for name in ("k", "axes", "precision", "rounding", "placement")), own.get("broad") == "sphere_boxes"]
                 group = groups.setdefault((record["scene"]["digest"], frame_range(record), *bounds), {})
                 group.setdefault(record["algorithm"], set()).add(json.dumps(digest))
     compared = [group for group in groups.values() if len(group) > 1]
