@@ -5,6 +5,7 @@
 // have fewer than 32 rows. Second keys of a run differ.
 #include "backends/portable.h"
 #include "algorithms/answer/pairs.clh"
+#include "algorithms/answer/parts.clh"
 
 // Rows in a buffer of `capacity` rows with a 64-bit counter.
 DEVICE uint rows_in(GLOBAL const uint* counter, uint capacity) {
@@ -33,13 +34,6 @@ KERNEL void count_contacts(GLOBAL const uint* contact_ids, uint capacity, GLOBAL
     const uint rows = rows_in(status + STATUS_CONTACTS, capacity);
     for (ulong i = GLOBAL_ID; i < rows; i += GLOBAL_COUNT)
         before[i] = ATOMIC_ADD(counts + ((GLOBAL const WordPair*)contact_ids)[i].x, 1u);
-}
-
-// The first of a work-group's part of `count` values.
-DEVICE uint group_first(uint group, uint count) {
-    const uint each = (count + GROUP_COUNT - 1u) / GROUP_COUNT;
-    const ulong first = (ulong)group * each;
-    return first < count ? (uint)first : count;
 }
 
 // A work-item's share of the sum of values first..end - 1: those a fixed stride apart.
