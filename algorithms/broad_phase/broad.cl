@@ -4,6 +4,7 @@
 // spatial order, fixed ones last, in tiles of BROAD_TILE. Two tiles are skipped if their unions do not
 // overlap; otherwise all their pairs are tested.
 #include "backends/portable.h"
+#include "algorithms/broad_phase/filters.clh"
 #include "algorithms/broad_phase/tile.clh"
 #include "algorithms/answer/status.clh"
 #include "algorithms/bodies/rows.clh"
@@ -11,11 +12,6 @@
 
 #ifndef SELF
 #define SELF 0
-#endif
-
-// 1: groups or lists of the scene keep some bodies apart.
-#ifndef FILTERED
-#define FILTERED 0
 #endif
 
 // In roots and unions a volume is DIRECTIONS rows {lower, upper}.
@@ -96,33 +92,6 @@ DEVICE uint own_column(GLOBAL const real* volumes, GLOBAL const uint* bodies, ui
     if (starts_beyond(volume[0], volume[DIRECTIONS])) return 0u;
     const int deformable = (bodies[(ulong)body * BODY_WORDS + BODY_FLAGS] & BODY_IN_WORLD) != 0u;
     return SELF == SELF_ON || deformable ? 1u << (position - first) : 0u;
-}
-
-// Whether the scene lets two bodies meet, or a body and itself: may_meet of scenes/scene.h without fixed
-// bodies. `filters`: the number of bodies; for each its groups, and the groups that it meets; for each, and
-// at their end, where its list starts; the lists, ascending: bodies of larger or equal number that it never
-// meets.
-DEVICE int may_meet(GLOBAL const uint* filters, uint one, uint other) {
-    const uint a = one < other ? one : other;
-    const uint b = one < other ? other : one;
-    const uint bodies = filters[0];
-    GLOBAL const uint* groups = filters + 1;
-    GLOBAL const uint* starts = groups + 2 * (ulong)bodies;
-    GLOBAL const uint* lists = starts + bodies + 1;
-    if (a != b
-        && ((groups[2 * (ulong)a] & groups[2 * (ulong)b + 1]) == 0u
-            || (groups[2 * (ulong)b] & groups[2 * (ulong)a + 1]) == 0u))
-        return 0;
-    uint low = starts[a];
-    uint high = starts[a + 1];
-    while (low < high) {
-        const uint middle = low + (high - low) / 2u;
-        if (lists[middle] < b)
-            low = middle + 1u;
-        else
-            high = middle;
-    }
-    return low == starts[a + 1] || lists[low] != b;
 }
 
 // Those of the columns `hits` whose bodies may meet body `a`.

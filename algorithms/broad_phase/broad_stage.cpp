@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/broad_phase/broad_stage.h"
 
+#include "algorithms/broad_phase/filters.h"
 #include "algorithms/broad_phase/tile.clh"
 #include "algorithms/bodies/ball.h"
 #include "algorithms/parameters/table.h"
@@ -15,20 +16,6 @@ namespace tandem {
 namespace {
 
 constexpr std::uint32_t most_bodies = (1u << 15) * BROAD_TILE; ///< 2^30 pairs of tiles, numbered by 32 bits
-
-/// The table `filters` of broad.cl.
-std::vector<std::uint32_t> filter_table(const Scene& scene) {
-    const auto count = static_cast<std::uint32_t>(scene.bodies.size());
-    std::vector<std::uint32_t> table{count};
-    for (const auto& body : scene.bodies) table.insert(table.end(), {body.groups, body.meets});
-    auto next = scene.never_meet.begin();
-    for (std::uint32_t body = 0; body <= count; ++body) {
-        while (next != scene.never_meet.end() && (*next)[0] < body) ++next;
-        table.push_back(static_cast<std::uint32_t>(next - scene.never_meet.begin()));
-    }
-    for (const auto& pair : scene.never_meet) table.push_back(pair[1]);
-    return table;
-}
 
 std::uint32_t tiles_of(std::uint32_t bodies) { return (bodies + BROAD_TILE - 1) / BROAD_TILE; }
 
@@ -48,8 +35,7 @@ BroadStage::BroadStage(const Bodies& bodies, const Buffer& volumes, LaunchShape 
     const auto& geometry = bodies.geometry();
     auto defines = geometry_defines(geometry, shape_.group_size);
     define(defines, parameters::self, self);
-    const bool is_filtered = has_filters(bodies.scene());
-    if (is_filtered) defines["FILTERED"] = "1";
+    if (has_filters(bodies.scene())) defines["FILTERED"] = "1";
     const auto& source = kernel_source("algorithms/broad_phase/broad.cl");
     if (tiles_of(count) > 1) bound_ = device.compile(source, "bound_tiles", defines);
     find_ = device.compile(source, "find_body_pairs", defines);
@@ -57,10 +43,7 @@ BroadStage::BroadStage(const Bodies& bodies, const Buffer& volumes, LaunchShape 
     order_ = device.allocate(std::uint64_t{count} * 4, "order of bodies");
     roots_ = device.allocate(count * volume, "root volumes");
     unions_ = device.allocate(tiles_of(count) * volume, "unions of tiles");
-    const auto filters = is_filtered ? filter_table(bodies.scene()) : std::vector<std::uint32_t>(1);
-    filters_ = device.allocate(filters.size() * 4, "filters of bodies");
-    const StageScope scope(device, Stage::write);
-    device.upload(filters_, bytes_of(filters));
+    filters_ = uploaded_filters(device, bodies.scene());
 }
 
 std::uint64_t BroadStage::most_pairs() const {
