@@ -78,6 +78,8 @@ std::vector<KernelCost> answer_costs(const SceneFacts& scene);
 std::vector<KernelCost> published_costs(const SceneFacts& scene);
 /// Costs of refits. `leaves`: tetrahedra of a chunk.
 std::vector<KernelCost> chunk_tree_costs(const SceneFacts& scene, std::uint32_t leaves);
+/// Those of a tree over all bodies, whose leaves are in trees of single bodies.
+std::vector<KernelCost> scene_tree_costs(const SceneFacts& scene);
 std::vector<KernelCost> tile_tree_costs(const SceneFacts& scene, double leaf_words, bool touched);
 
 } // namespace tandem

@@ -13,6 +13,9 @@ namespace tandem {
 /// k-DOPs in complete binary trees with implicit children (heap.clh).
 class ChunkTrees final : public Hierarchy {
 public:
+    /// Tetrahedra of a chunk: more than a body can have, so that each body is one complete binary tree.
+    static constexpr std::uint32_t one_chunk_a_body = std::uint32_t{1} << 30;
+
     /// `leaves`: tetrahedra per chunk, a power of two. `group_size`: maximum work-items of a work-group.
     /// `bodies` must outlive this object. Throws OutOfMemory when the nodes do not fit, DeviceError when
     /// there are 2^32 or more.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Cost floors of refit.cl and refit_tiles.cl: moving bodies only, all launches of a frame together.
 #include "algorithms/cost.h"
-#include "algorithms/hierarchy/levels.h"
+#include "algorithms/hierarchy/chunk_trees.h"
 #include "backends/lanes.h"
 
 #include <cmath>
@@ -47,6 +47,27 @@ std::vector<KernelCost> chunk_tree_costs(const SceneFacts& scene, std::uint32_t 
              {},
              {},
              "nothing: the number of nodes that skipped tetrahedra change is not counted"}};
+}
+
+/// An inner node reads no less than its leaf, and is written once. Boxes, and nodes of fixed bodies, are not
+/// counted.
+std::vector<KernelCost> scene_tree_costs(const SceneFacts& scene) {
+    constexpr double node_words = 4;
+    const auto items = sum_of(scene.tetrahedra, [](double n) { return n; });
+    const auto read = items * (scene.dop() + node_words * 4);
+    auto costs = chunk_tree_costs(scene, ChunkTrees::one_chunk_a_body);
+    for (const auto* entry : {"begin_build", "code_leaves", "count_digits", "scatter_digits", "link_nodes"})
+        costs.push_back({entry, {}, {}, "nothing: frames that keep their tree have no work for it"});
+    costs.push_back({"bound_boxes", [=](const FrameFacts&) { return read; },
+                     [=, k = scene.k](const FrameFacts&) { return items * k; },
+                     "reads leaves and their bounds; k operations per leaf"});
+    costs.push_back(
+        {"bound_inner_nodes",
+         [=, dop = scene.dop()](const FrameFacts&) { return read + items * (dop + node_words * 4); },
+         [=, k = scene.k](const FrameFacts&) { return items * k; },
+         "reads leaves, their bounds and inner nodes, writes bounds of inner nodes; k operations "
+         "per inner node"});
+    return costs;
 }
 
 /// Either kernel may build the tiles of level 1, so neither floor counts them.

@@ -17,9 +17,6 @@ constexpr std::uint32_t passive = 0x80000000, meets_itself_flag = 0x80000000;
 constexpr std::uint32_t box_items = 8;
 constexpr std::size_t state_words = 2, row_words = 4;
 
-/// Tetrahedra of a chunk of the bodies' own trees: more than a body can have, so that each body is one tree.
-constexpr std::uint32_t body_leaves = std::uint32_t{1} << 30;
-
 /// Numbers of boxes by level, from level 1 up.
 std::vector<std::uint32_t> box_levels(std::uint32_t leaves) {
     std::vector<std::uint32_t> levels;
@@ -44,7 +41,7 @@ std::uint32_t tetrahedra_of(const Bodies& bodies) {
 } // namespace
 
 SceneTree::SceneTree(const Bodies& bodies, LaunchShape shape, SelfPairs self, std::uint32_t period)
-    : trees_(bodies, body_leaves, shape.group_size),
+    : trees_(bodies, ChunkTrees::one_chunk_a_body, shape.group_size),
       device_(bodies.device()),
       shape_(shape),
       self_(self),

@@ -2,12 +2,10 @@
 #include "algorithms/traversal.h"
 
 #include "algorithms/cost.h"
-#include "algorithms/hierarchy/chunk_trees.h"
-#include "algorithms/hierarchy/queries.h"
+#include "algorithms/leaf_query/body_queries.h"
+#include "algorithms/leaf_query/leaf_query_parameters.h"
+#include "algorithms/leaf_query/scene_queries.h"
 #include "algorithms/pipeline.h"
-#include "algorithms/sources.h"
-
-#include <algorithm>
 
 namespace tandem {
 
@@ -18,76 +16,21 @@ const std::vector<Preset> all_presets{
      "everything resident, body pairs included, one wait per frame",
      {parameters::broad(Broad::device), parameters::builder(Builder::sah)}}};
 
+constexpr std::array<const Parameter*, 2> own{&leaf_query_parameters::tree, &leaf_query_parameters::rebuild};
+
 constexpr std::array all_counters{counters::bvtt_nodes, counters::seeds};
 
-/// Tetrahedra of a chunk: more than a body can have, so that each body is one tree.
-constexpr std::uint32_t leaves = std::uint32_t{1} << 30;
-
-/// Every tetrahedron of the smaller body of a body pair queries the other body's tree.
-class LeafQueries final : public Walker {
-public:
-    /// `trees` must outlive this object; each body is one chunk.
-    LeafQueries(const ChunkTrees& trees, LaunchShape shape, bool has_self);
-
-private:
-    void do_compile(const WalkBuild& build) override;
-    void do_launch(const WalkTask& task) override;
-    bool do_grow(const Status&) override { return false; }
-    void do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const override;
-
-    const ChunkTrees& trees_;
-    LaunchShape shape_;
-    std::uint32_t blocks_; ///< turns of a work-group for the body pair with the most queries
-    Kernel kernel_;
-};
-
-LeafQueries::LeafQueries(const ChunkTrees& trees, LaunchShape shape, bool has_self)
-    : trees_(trees), shape_(shape) {
-    const auto queries = most_queries(trees.bodies(), has_self);
-    blocks_ = std::max(1u, (queries + shape.group_size - 1) / shape.group_size);
-}
-
-void LeafQueries::do_compile(const WalkBuild& build) {
-    auto defines = trees_.defines(shape_.group_size);
-    build.add_to(defines);
-    kernel_ = trees_.bodies().device().compile(kernel_source("algorithms/leaf_query/leaf_query.cl"),
-                                               "query_leaves", defines);
-}
-
-void LeafQueries::do_launch(const WalkTask& task) {
-    const auto& bodies = trees_.bodies();
-    const StageScope scope(bodies.device(), Stage::traverse);
-    const auto turns = std::uint64_t{task.most_pairs()} * blocks_;
-    const Grid grid{std::min<std::uint64_t>(shape_.groups, turns), shape_.group_size};
-    const std::array<Argument, 11> arguments{trees_.nodes(),
-                                             trees_.tree_table(),
-                                             bodies.row_table(),
-                                             bodies.ids(),
-                                             bodies.tetrahedra(),
-                                             task.body_pairs,
-                                             task.pair_capacity,
-                                             blocks_,
-                                             task.answer.pairs.buffer(),
-                                             task.answer.pairs.capacity(),
-                                             task.status.buffer()};
-    bodies.device().launch(kernel_, grid, arguments);
-}
-
-void LeafQueries::do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const {
-    work[counters::bvtt_nodes.name] += status.counter(STATUS_BVTT_NODES);
-    work[counters::seeds.name] += status.counter(STATUS_SEEDS);
-}
+constexpr auto leaves = ChunkTrees::one_chunk_a_body;
 
 class LeafQuery : public Traversal {
 public:
     std::string_view name() const override { return "leaf_query"; }
     std::string_view summary() const override {
-        return "the field's standard method: a binary tree per body, which each tetrahedron of the other "
-               "body "
+        return "the field's standard method: a binary tree per body or per scene, which each tetrahedron "
                "queries, without a stack";
     }
     std::span<const Parameter* const> parameters() const override {
-        static const auto all = pipeline_parameters({}, false);
+        static const auto all = pipeline_parameters(own, false);
         return all;
     }
     std::span<const Preset> presets() const override { return all_presets; }
@@ -98,15 +41,22 @@ private:
 
     std::vector<KernelCost> do_costs(const Scene& scene, const Settings& settings) const override {
         const SceneFacts s(scene, settings);
-        auto costs = chunk_tree_costs(s, leaves);
-        costs.push_back(walk_cost(s, "query_leaves"));
+        const bool has_scene_tree = settings[leaf_query_parameters::tree] == QueriedTree::scene;
+        auto costs = has_scene_tree ? scene_tree_costs(s) : chunk_tree_costs(s, leaves);
+        costs.push_back(walk_cost(s, has_scene_tree ? "query_scene" : "query_leaves"));
         return costs;
     }
 
     AlgorithmStages do_build(const BuildContext& context) const override {
+        const auto self = context.settings[parameters::self];
+        if (context.settings[leaf_query_parameters::tree] == QueriedTree::scene) {
+            const auto period = static_cast<std::uint32_t>(context.settings[leaf_query_parameters::rebuild]);
+            auto tree = std::make_unique<SceneTree>(context.bodies, context.shape, self, period);
+            auto queries = std::make_unique<SceneQueries>(*tree, context.shape);
+            return {std::move(tree), std::move(queries)};
+        }
         auto trees = std::make_unique<ChunkTrees>(context.bodies, leaves, context.shape.group_size);
-        auto queries = std::make_unique<LeafQueries>(*trees, context.shape,
-                                                     context.settings[parameters::self] != SelfPairs::off);
+        auto queries = std::make_unique<BodyQueries>(*trees, context.shape, self != SelfPairs::off);
         return {std::move(trees), std::move(queries)};
     }
 };

@@ -29,6 +29,8 @@ const std::vector<SettingValues> settings_of_single_algorithms{
     {"seed_threshold", {"0", "1", "40", "1e7"}},
     {"seed_target", {"1000", "1048576"}},
     {"seed_capacity", {"1", "65536"}},
+    {"tree", {"body", "scene"}},
+    {"rebuild", {"1", "2"}},
     {"builder", {"morton", "sah", "breadth", "hilbert", "median", "balanced"}},
     {"output", {"pairs", "contacts"}},
     {"slabs", {"three", "all", "touched"}},
@@ -204,7 +206,8 @@ TEST_P(CoveringArray, Tiled) { cover("tiled", 400, 7); }
 TEST_P(CoveringArray, LeafQuery) { cover("leaf_query", 500, 7); }
 TEST_P(CoveringArray, Listed) { cover("listed", 600, 7); }
 TEST_P(CoveringArray, EveryOther) {
-    const std::set<std::string_view> own{"chunked", "gproximity", "tiled", "leaf_query", "listed"};
+    const std::set<std::string_view> own{"chunked",          "gproximity", "tiled", "leaf_query",
+                                         "leaf_query_scene", "listed"}; // leaf_query covers both of its trees
     for (const auto* traversal : algorithms())
         if (!own.contains(traversal->name())) cover(traversal->name(), 300, 7);
 }

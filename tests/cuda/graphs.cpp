@@ -237,6 +237,17 @@ protected:
     unsigned long waits_of_last = 0; ///< waits in the last frame of calls()
 };
 
+/// A tree over all bodies is built every other frame, by the same commands as in the frames that keep it.
+TEST_F(CudaSessions, AFrameThatBuildsATreeIsOneSubmission) {
+    const auto one =
+        calls(*prepare(algorithm("leaf_query"), {{"broad", "device"}, {"tree", "scene"}, {"rebuild", "2"}}));
+    const auto each =
+        calls(*prepare(algorithm("leaf_query"),
+                       {{"broad", "device"}, {"tree", "scene"}, {"rebuild", "2"}, {"submission", "each"}}));
+    EXPECT_GT(each[1], 20u);
+    EXPECT_EQ(one, (std::vector<std::uint64_t>{each[0], each[1], 1, 1, 1}));
+}
+
 TEST_F(CudaSessions, AFrameIsOneSubmissionForEachWait) {
     for (const auto* traversal : algorithms()) {
         SCOPED_TRACE(traversal->name());

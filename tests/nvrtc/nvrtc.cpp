@@ -87,6 +87,12 @@ void prepare_contacts(Device& device) {
                             {{"precision", precision}, {"contact_rule", word}, {"decision", decision}});
 }
 
+/// One tree over all bodies, in both precisions.
+void prepare_scene_tree(Device& device, const std::string& k) {
+    for (const std::string precision : {"float", "double"})
+        prepare(device, algorithm("leaf_query"), {}, {{"tree", "scene"}, {"k", k}, {"precision", precision}});
+}
+
 /// The plan: every geometry and contact rule with the first preset of every algorithm; every rounding and
 /// placement with all directions in float; every preset and output with its own settings.
 Programs plan() {
@@ -110,6 +116,7 @@ Programs plan() {
             for (const std::string output : {"pairs", "count", "digest"})
                 prepare(device, *traversal, preset.values, {{"output", output}});
     }
+    for (const std::string k : {"6", "8", "18", "26"}) prepare_scene_tree(device, k);
     for (const auto precision : {Precision::fp32, Precision::fp64}) prepare_pair_list(device, precision);
     return device.requested();
 }
@@ -119,6 +126,7 @@ Programs defaults() {
     for (const auto* traversal : algorithms())
         for (const std::string precision : {"float", "double"})
             prepare(device, *traversal, traversal->presets().front().values, {{"precision", precision}});
+    prepare_scene_tree(device, "18");
     for (const std::string most_seeds : {"1", "16384"}) // start at tops, and below them
         prepare(device, algorithm("tiled"), {}, {{"most_seeds", most_seeds}});
     for (const std::string k : {"6", "18"})

@@ -14,13 +14,14 @@ namespace {
 
 using namespace support;
 
-/// Settings that, besides presets, reach every kernel: decisions, and a balance by one group.
+/// Settings that, besides presets, reach every kernel: decisions, a balance by one group, and other trees.
 const std::vector<SettingTexts> variants{{},
                                          {{"decision", "recheck"}},
                                          {{"decision", "fp64"}},
                                          {{"decision", "exact"}},
                                          {{"balance", "serial"}},
-                                         {{"schedule", "item"}}};
+                                         {{"schedule", "item"}},
+                                         {{"tree", "scene"}}};
 
 /// A crowd whose second frame skips a tetrahedron.
 Scene skipping_crowd() {
@@ -66,9 +67,10 @@ TEST(ProfileCosts, EveryKernelOfAFrameHasAFloorOrAReason) {
         for (const auto& cost : costs) EXPECT_FALSE(cost.how.empty()) << cost.entry;
     });
     // The loops above must reach these kernels, or the test checks too little.
-    for (const auto* entry : {"refit_strips", "refit_tops", "empty_nodes", "find_body_pairs", "traverse",
-                              "traverse_in_groups", "traverse_queues", "move_balance_serially",
-                              "walk_leaf_tiles", "certify_pairs", "recheck_pairs", "transform_vertices"})
+    for (const auto* entry :
+         {"refit_strips", "refit_tops", "empty_nodes", "find_body_pairs", "traverse", "traverse_in_groups",
+          "traverse_queues", "move_balance_serially", "walk_leaf_tiles", "scatter_digits", "query_scene",
+          "certify_pairs", "recheck_pairs", "transform_vertices"})
         EXPECT_TRUE(launched.contains(entry)) << entry;
 }
 

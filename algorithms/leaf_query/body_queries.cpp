@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/leaf_query/body_queries.h"
+
+#include "algorithms/hierarchy/queries.h"
+#include "algorithms/sources.h"
+
+#include <algorithm>
+
+namespace tandem {
+
+BodyQueries::BodyQueries(const ChunkTrees& trees, LaunchShape shape, bool has_self)
+    : trees_(trees), shape_(shape) {
+    const auto queries = most_queries(trees.bodies(), has_self);
+    blocks_ = std::max(1u, (queries + shape.group_size - 1) / shape.group_size);
+}
+
+void BodyQueries::do_compile(const WalkBuild& build) {
+    auto defines = trees_.defines(shape_.group_size);
+    build.add_to(defines);
+    kernel_ = trees_.bodies().device().compile(kernel_source("algorithms/leaf_query/body_query.cl"),
+                                               "query_leaves", defines);
+}
+
+void BodyQueries::do_launch(const WalkTask& task) {
+    const auto& bodies = trees_.bodies();
+    const StageScope scope(bodies.device(), Stage::traverse);
+    const auto turns = std::uint64_t{task.most_pairs()} * blocks_;
+    const Grid grid{std::min<std::uint64_t>(shape_.groups, turns), shape_.group_size};
+    const std::array<Argument, 11> arguments{trees_.nodes(),
+                                             trees_.tree_table(),
+                                             bodies.row_table(),
+                                             bodies.ids(),
+                                             bodies.tetrahedra(),
+                                             task.body_pairs,
+                                             task.pair_capacity,
+                                             blocks_,
+                                             task.answer.pairs.buffer(),
+                                             task.answer.pairs.capacity(),
+                                             task.status.buffer()};
+    bodies.device().launch(kernel_, grid, arguments);
+}
+
+void BodyQueries::do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const {
+    work[counters::bvtt_nodes.name] += status.counter(STATUS_BVTT_NODES);
+    work[counters::seeds.name] += status.counter(STATUS_SEEDS);
+}
+
+} // namespace tandem
