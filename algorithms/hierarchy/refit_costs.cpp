@@ -58,6 +58,9 @@ std::vector<KernelCost> scene_tree_costs(const SceneFacts& scene) {
     auto costs = chunk_tree_costs(scene, ChunkTrees::one_chunk_a_body);
     for (const auto* entry : {"begin_build", "code_leaves", "count_digits", "scatter_digits", "link_nodes"})
         costs.push_back({entry, {}, {}, "nothing: frames that keep their tree have no work for it"});
+    costs.push_back({"copy_leaf_bounds",
+                     [=, dop = scene.dop()](const FrameFacts&) { return 2 * items * dop; }, no_operations,
+                     "copies bounds of leaves"});
     costs.push_back({"bound_boxes", [=](const FrameFacts&) { return read; },
                      [=, k = scene.k](const FrameFacts&) { return items * k; },
                      "reads leaves and their bounds; k operations per leaf"});

@@ -11,8 +11,8 @@ typedef struct {
     uint least, most, is_active;
 } Cover;
 
-// Tables of the tree. Boxes have K reals, and an owner row: least and greatest body, and whether one is
-// active.
+// Tables of the tree. `bounds`: of leaves. Boxes have K reals, and an owner row: least and greatest body, and
+// whether one is active.
 typedef struct {
     GLOBAL const real* bounds;
     GLOBAL const WordRow* leaves;
@@ -67,7 +67,7 @@ DEVICE void widen_by_run(const Scene* scene, RunLevel level, uint i, Cover* cove
     if (level.is_leaves) {
         const WordRow leaf = scene->leaves[i];
         const uint body = body_of(leaf.z);
-        widen_cover(cover, node_at(scene->bounds, leaf.x), body, body, (leaf.z & PASSIVE) == 0u ? 1u : 0u);
+        widen_cover(cover, node_at(scene->bounds, i), body, body, (leaf.z & PASSIVE) == 0u ? 1u : 0u);
     } else {
         const WordRow owner = scene->owners[level.base + i];
         widen_cover(cover, node_at(scene->boxes, level.base + i), owner.x, owner.y, owner.z);
@@ -93,6 +93,16 @@ DEVICE Cover cover_of(const Scene* scene, uint first, uint end) {
 
 DEVICE void store_slabs(const Cover* cover, GLOBAL real* node) {
     UNROLL for (int word = 0; word < K; ++word) node[word] = cover->slab[word];
+}
+
+// Copies bounds of leaves from the trees of bodies, so that neighbours along the curve are so in memory. One
+// word per work-item.
+KERNEL void copy_leaf_bounds(GLOBAL const real* nodes, GLOBAL const uint* leaves, uint count,
+                             GLOBAL real* bounds) {
+    for (ulong i = GLOBAL_ID; i < (ulong)count * K; i += GLOBAL_COUNT) {
+        const uint leaf = (uint)(i / K);
+        bounds[i] = node_at(nodes, ((GLOBAL const WordRow*)leaves)[leaf].x)[i % K];
+    }
 }
 
 // Makes the boxes of level `first_level`, and with `levels` = 2 also those of the level above it, which need

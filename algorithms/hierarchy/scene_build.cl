@@ -79,15 +79,15 @@ DEVICE uint spread(uint bits) {
     return (bits | bits << 2) & 0x09249249u;
 }
 
-// Keys and values of the sort: the Morton code of each tetrahedron and its row number. `rows`: slot of its
-// bounds, owner and item, in the order of bodies.
-KERNEL void code_leaves(GLOBAL const uint* rows, uint count, GLOBAL const real* bounds,
+// Keys and values of the sort: the Morton code of each tetrahedron and its row number. `rows`: its slot in
+// `nodes`, the trees of bodies, then owner and item, in the order of bodies.
+KERNEL void code_leaves(GLOBAL const uint* rows, uint count, GLOBAL const real* nodes,
                         GLOBAL const real* region, GLOBAL const uint* state, GLOBAL uint* keys,
                         GLOBAL uint* values) {
     const uint leaves = builds_of(state, count);
     const RealRow cells = ((GLOBAL const RealRow*)region)[0];
     for (uint i = GLOBAL_ID; i < leaves; i += GLOBAL_COUNT) {
-        GLOBAL const real* slabs = node_at(bounds, ((GLOBAL const WordRow*)rows)[i].x);
+        GLOBAL const real* slabs = node_at(nodes, ((GLOBAL const WordRow*)rows)[i].x);
         const uint x = cell_of(slabs[0], slabs[DIRECTIONS], cells.x, cells.w);
         const uint y = cell_of(slabs[1], slabs[DIRECTIONS + 1], cells.y, cells.w);
         const uint z = cell_of(slabs[2], slabs[DIRECTIONS + 2], cells.z, cells.w);

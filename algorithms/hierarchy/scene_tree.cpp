@@ -56,6 +56,7 @@ SceneTree::SceneTree(const Bodies& bodies, LaunchShape shape, SelfPairs self, st
     state_ = device_.allocate(state_words * 4, "state of the scene's tree");
     leaves_ = device_.allocate(most * row, "leaves of the scene's tree");
     inner_ = device_.allocate(most * row, "inner nodes of the scene's tree");
+    leaf_bounds_ = device_.allocate(most * node, "bounds of leaves");
     inner_bounds_ = device_.allocate(most * node, "bounds of inner nodes");
     boxes_ = device_.allocate(boxes * node, "boxes of leaves");
     box_owners_ = device_.allocate(boxes * row, "owners of boxes");
@@ -66,6 +67,7 @@ SceneTree::SceneTree(const Bodies& bodies, LaunchShape shape, SelfPairs self, st
     begin_ = compile("algorithms/hierarchy/scene_build.cl", "begin_build");
     code_ = compile("algorithms/hierarchy/scene_build.cl", "code_leaves");
     link_ = compile("algorithms/hierarchy/scene_build.cl", "link_nodes");
+    copy_ = compile("algorithms/hierarchy/scene_bounds.cl", "copy_leaf_bounds");
     boxes_kernel_ = compile("algorithms/hierarchy/scene_bounds.cl", "bound_boxes");
     inner_kernel_ = compile("algorithms/hierarchy/scene_bounds.cl", "bound_inner_nodes");
     upload_rows();
@@ -109,14 +111,14 @@ void SceneTree::do_take(const Subdomain& subdomain) {
 
 std::size_t SceneTree::do_bytes() const {
     std::size_t all = trees_.bytes() + sort_->bytes();
-    for (const auto* buffer :
-         {&rows_, &body_list_, &region_, &state_, &leaves_, &inner_, &inner_bounds_, &boxes_, &box_owners_})
+    for (const auto* buffer : {&rows_, &body_list_, &region_, &state_, &leaves_, &inner_, &leaf_bounds_,
+                               &inner_bounds_, &boxes_, &box_owners_})
         all += buffer->bytes();
     return all;
 }
 
-Grid SceneTree::grid(std::uint32_t items) const {
-    const auto groups = (std::uint64_t{items} + shape_.group_size - 1) / shape_.group_size;
+Grid SceneTree::grid(std::uint64_t items) const {
+    const auto groups = (items + shape_.group_size - 1) / shape_.group_size;
     return {std::min<std::uint64_t>(groups, shape_.groups), shape_.group_size};
 }
 
@@ -125,7 +127,7 @@ void SceneTree::build() {
         trees_.volumes(), body_list_, body_count_, std::uint32_t{builds_next_ ? 1u : 0u},
         period_,          state_,     region_};
     device_.launch(begin_, {1, shape_.group_size}, begin);
-    const std::array<Argument, 7> code{rows_,  count_,        leaf_bounds(),  region_,
+    const std::array<Argument, 7> code{rows_,  count_,        trees_.nodes(), region_,
                                        state_, sort_->keys(), sort_->values()};
     device_.launch(code_, grid(count_), code);
     sort_->launch(count_, state_);
@@ -137,16 +139,19 @@ void SceneTree::build() {
 
 /// Two levels of boxes a launch, after the lowest, which has a launch of its own: it reads the most.
 void SceneTree::bound() {
+    const std::array<Argument, 4> copy{trees_.nodes(), leaves_, count_, leaf_bounds_};
+    device_.launch(copy_, grid(std::uint64_t{count_} * static_cast<std::uint64_t>(bodies().geometry().k)),
+                   copy);
     const auto levels = box_levels(count_);
     for (std::uint32_t level = 1; level <= levels.size();) {
         const std::uint32_t both = level > 1 && level < levels.size() ? 2 : 1;
-        const std::array<Argument, 7> boxes{leaf_bounds(), leaves_, count_, level, both, boxes_, box_owners_};
+        const std::array<Argument, 7> boxes{leaf_bounds_, leaves_, count_, level, both, boxes_, box_owners_};
         const auto items = levels[level - 1] + (both == 2 ? levels[level] : 0);
         device_.launch(boxes_kernel_, grid(items), boxes);
         level += both;
     }
-    const std::array<Argument, 7> inner{leaf_bounds(), leaves_, count_,       boxes_,
-                                        box_owners_,   inner_,  inner_bounds_};
+    const std::array<Argument, 7> inner{leaf_bounds_, leaves_, count_,       boxes_,
+                                        box_owners_,  inner_,  inner_bounds_};
     device_.launch(inner_kernel_, grid(count_ - 1), inner);
 }
 

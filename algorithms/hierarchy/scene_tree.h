@@ -9,7 +9,7 @@
 namespace tandem {
 
 /// One binary tree over the tetrahedra of all bodies, built on the device along a Morton curve
-/// (scene_tree.clh). Leaves have the bounds of trees over single bodies, which it also refits. Bounds follow
+/// (scene_tree.clh). Leaves copy the bounds of trees over single bodies, which it also refits. Bounds follow
 /// every frame; the tree is built anew every few frames, in a fixed sequence of launches.
 class SceneTree final : public Hierarchy {
 public:
@@ -30,11 +30,11 @@ public:
     bool has_subdomain() const { return subdomain_.has_value(); }
 
     const Buffer& tree_table() const { return trees_.tree_table(); } ///< of the trees of bodies (node.clh)
-    const Buffer& leaf_bounds() const { return trees_.nodes(); }
-    const Buffer& leaves() const { return leaves_; }             ///< a row of 4 words per leaf
-    const Buffer& inner() const { return inner_; }               ///< the same per inner node
-    const Buffer& inner_bounds() const { return inner_bounds_; } ///< K reals per inner node
-    const Buffer& state() const { return state_; }               ///< STATE_WORDS words
+    const Buffer& leaf_bounds() const { return leaf_bounds_; }       ///< K reals per leaf
+    const Buffer& leaves() const { return leaves_; }                 ///< a row of 4 words per leaf
+    const Buffer& inner() const { return inner_; }                   ///< the same per inner node
+    const Buffer& inner_bounds() const { return inner_bounds_; }     ///< K reals per inner node
+    const Buffer& state() const { return state_; }                   ///< STATE_WORDS words
 
 private:
     /// A row of code_leaves in scene_build.cl.
@@ -52,7 +52,7 @@ private:
     void upload_rows();
     void build();
     void bound();
-    Grid grid(std::uint32_t items) const;
+    Grid grid(std::uint64_t items) const;
 
     ChunkTrees trees_;
     Device& device_;
@@ -64,8 +64,9 @@ private:
     bool builds_next_ = true;      ///< the next frame builds, whatever the period
     std::optional<Subdomain> subdomain_;
     std::optional<RadixSort> sort_;
-    Buffer rows_, body_list_, region_, state_, leaves_, inner_, inner_bounds_, boxes_, box_owners_;
-    Kernel begin_, code_, link_, boxes_kernel_, inner_kernel_;
+    Buffer rows_, body_list_, region_, state_, leaves_, inner_, leaf_bounds_, inner_bounds_, boxes_,
+        box_owners_;
+    Kernel begin_, code_, link_, copy_, boxes_kernel_, inner_kernel_;
 };
 
 } // namespace tandem

@@ -94,7 +94,7 @@ DEVICE void query_behind(const SceneTables* scene, GLOBAL const uint* trees, uin
     LeafQuery query = query_of(scene, own_row);
     if (scene->has_lists != 0u && query.first == query.end) return;
     Node own, other;
-    load_node(scene->leaf_bounds, own_row.x, &own);
+    load_node(scene->leaf_bounds, leaf, &own);
     if (COUNT_WORK) tally->seeds += 1;
     uint node = own_row.y;
     while (node != NO_NODE) {
@@ -104,10 +104,7 @@ DEVICE void query_behind(const SceneTables* scene, GLOBAL const uint* trees, uin
         node = row.y;
         if (is_left_out(scene, &query, row.z)) continue;
         if (COUNT_WORK) tally->tests += 1;
-        if (is_inner)
-            load_node(scene->inner_bounds, number, &other);
-        else
-            load_node(scene->leaf_bounds, row.x, &other);
+        load_node(is_inner ? scene->inner_bounds : scene->leaf_bounds, number, &other);
         if (!nodes_overlap(&own, &other) || !may_meet_owner(scene, &query, row.z)) continue;
         if (is_inner)
             node = row.x;

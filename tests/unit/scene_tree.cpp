@@ -18,7 +18,7 @@ using namespace support;
 constexpr std::uint32_t leaf_flag = 0x80000000, no_node = 0xffffffff;
 constexpr std::uint32_t passive_flag = 0x80000000, many_bodies = 0x7fffffff, self_flag = 0x80000000;
 
-/// A row of the tree: left child or slot of bounds, rope, owner, other end or item.
+/// A row of the tree: left child or slot in the trees of bodies, rope, owner, other end or item.
 struct Row {
     std::uint32_t first, rope, owner, last;
 };
@@ -37,6 +37,7 @@ public:
         inner = words<Row>(tree.inner());
         leaf_bounds = words<float>(tree.leaf_bounds());
         inner_bounds = words<float>(tree.inner_bounds());
+        body_nodes = words<float>(tree.nodes());
         volumes = words<float>(tree.volumes());
     }
 
@@ -44,8 +45,8 @@ public:
         return (node & leaf_flag) != 0 ? leaves[node & ~leaf_flag] : inner[node];
     }
     std::span<const float> bounds(std::uint32_t node) const {
-        return (node & leaf_flag) != 0 ? std::span(leaf_bounds).subspan(row(node).first * k, k)
-                                       : std::span(inner_bounds).subspan(node * k, k);
+        return std::span((node & leaf_flag) != 0 ? leaf_bounds : inner_bounds)
+            .subspan((node & ~leaf_flag) * k, k);
     }
     /// The 64-bit key of a leaf: its Morton code in the region of `bodies`, then its number.
     std::uint64_t key(std::uint32_t leaf, const std::vector<std::uint32_t>& bodies) const;
@@ -53,7 +54,7 @@ public:
     std::size_t k;
     std::uint32_t count;
     std::vector<Row> leaves, inner;
-    std::vector<float> leaf_bounds, inner_bounds, volumes;
+    std::vector<float> leaf_bounds, inner_bounds, body_nodes, volumes;
 
 private:
     template<class T>
@@ -161,6 +162,8 @@ void expect_right_tree(const Downloaded& tree, const Bodies& all, const std::vec
         ASSERT_TRUE(std::ranges::find(bodies, body) != bodies.end());
         ASSERT_LT(item, all.row(body).tetrahedron_count);
         EXPECT_TRUE(found.insert({body, item}).second) << "twice: " << item << " of body " << body;
+        EXPECT_TRUE(std::ranges::equal(tree.bounds(leaf | leaf_flag),
+                                       std::span(tree.body_nodes).subspan(row.first * tree.k, tree.k)));
         EXPECT_EQ((row.owner & passive_flag) != 0, is_passive(body));
         EXPECT_EQ((row.last & self_flag) != 0, !is_passive(body) && meets_itself(all.scene(), body, self));
         if (leaf > 0) {
