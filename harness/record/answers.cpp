@@ -93,9 +93,10 @@ Fields<CellRecord> effort_fields() {
          [](auto& r) { return r.m.retries; }},
         {"rebuilds",
          count(),
-         "walks of the last sample because no list of an earlier frame was valid (algorithm listed), over "
-         "all "
-         "frames and devices; 0 for other algorithms; records from before it have none",
+         "walks of the last sample because no list of an earlier frame was valid (algorithm listed), or "
+         "walks "
+         "whose frame built the tree (leaf_query with tree=scene), over all frames and devices; 0 for other "
+         "walks; records from before it have none",
          [](auto& r) { return r.m.samples.empty() ? 0 : r.m.samples.back().rebuilds; },
          {.optional = true}},
         {"batches", nullable(integer_from(0)),
