@@ -85,7 +85,7 @@ void BodyPairs::begin(const FrameInput& input, std::optional<std::span<const Bod
             keep_part();
         }
         upload(found_);
-        complete_ = first_ == 0 && most_ == 0;
+        complete_ = method_ != Broad::sphere_boxes; // others find all whose volumes overlap
     }
 }
 

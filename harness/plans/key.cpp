@@ -19,13 +19,15 @@ std::string models_of(const Cell& cell) {
 }
 
 /// Settings that came after the first records, with the values that these stand for.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 6> later_settings{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 8> later_settings{
     {{"first_body_pair", "0"},
      {"most_body_pairs", "0"},
      {"motion", "none"},
      {"order", "any"},
+     {"rebuild", "8"},
      {"self", "off"},
-     {"sizes", "own"}}};
+     {"sizes", "own"},
+     {"tree", "body"}}};
 
 bool is_later_default(const std::string& name, const std::string& value) {
     return std::ranges::find(later_settings, std::pair<std::string_view, std::string_view>(name, value))

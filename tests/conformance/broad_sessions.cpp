@@ -104,6 +104,11 @@ TEST_P(BroadSessions, BoxesOfSpheresLeaveOutOnlyPairsThatDoNotMeet) {
     EXPECT_EQ(result.digest(), kept.digest);
     EXPECT_EQ(more.digest(), all.digest);
     EXPECT_LT(result.body_pairs, more.body_pairs);
+    // A walk that needs no body pairs asks for them where the broad phase leaves out some.
+    const SettingTexts whole{{"k", "8"}, {"broad", "sphere_boxes"}, {"tree", "scene"}};
+    const auto& leaf_query = algorithm("leaf_query");
+    const auto asked = resolve(leaf_query.parameters(), {}, whole, leaf_query.name());
+    EXPECT_EQ(leaf_query.prepare(devices, scene, asked)->run(frame).digest(), kept.digest);
 }
 
 /// Parts of a frame's body pairs have together the frame's pairs, and each the reference's.
