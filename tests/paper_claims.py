@@ -23,7 +23,7 @@ from tandem.paper import claims, paper_numbers
 from tandem.paper.folder import Folder
 from tandem.paper.measures import Declared
 from tandem.paper.methods import names
-from tandem.paper.quantities import is_time
+from tandem.paper.quantities import batches_of, is_time
 from tandem.paper.rules import AGREES, DIFFERS, NOT_SETTLED, UNTESTED, Measured, exact, judged, limits, together
 
 COMMITTED = SOURCE / "results/h200/paper"
@@ -181,6 +181,16 @@ class Verdicts(unittest.TestCase):
             record["conditions"]["disturbed"] = [{"round": number, "why": "load"} for number in range(3)]
         line = claims.line_of(Declared(fields), self.folder(three), "plates", "8")
         self.assertEqual((line.verdict, line.reason, line.measured.disturbed), (NOT_SETTLED, "disturbed samples only", 6))
+
+    def test_batches_by_the_rule_of_the_release(self):
+        """132 compute units take 2048 work-items each, in groups of 992: 272 body pairs a batch (an H200)."""
+        record = made.record("plates", {"algorithm": "gproximity", "preset": "published", "batch": "0", "sizes": "release", "group_size": "992"}, 1)
+        record["devices"][0]["compute_units"] = 132
+        record["work"]["body_pairs"] = [272, 273, 600] + [0] * (made.FULL_STEPS - 3)
+        frames = [(0, 0), (1, 1), (2, 2), (0, made.FULL_STEPS - 1)]
+        self.assertEqual([batches_of(record, own) for own in frames], [1, 2, 3, 6])
+        record["settings"] |= {"sizes": "own", "batch": "30"}
+        self.assertEqual(batches_of(record, (0, 0)), 10)
 
     def test_only_common_frames_of_one_recording_are_compared(self):
         fields = {one["id"]: one for one in claims.declared()}["fewer-launches"]

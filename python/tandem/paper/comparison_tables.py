@@ -83,9 +83,9 @@ def table4(folder):
                  ("Resident: everything stays on the device; four methods. Published: both algorithms convert, upload and read back everything in every frame. Above 1, "
                   "gProximity takes longer. frame has whole frames with their 95 % interval; narrow is what the paper calls narrow phase. Both methods of a row have the "
                   "same frames of one recording.",
-                  "gProximity published also uploads its queue array for every batch; queue_bytes has its size. Its launch geometry and its batches of 30 body "
-                  "pairs are a K40c's. Composed rows add the measured upload of the array that the release would allocate on this device to each batch.",
-                  "The published presets keep of ours: rounding = safe, contact_rule = opposing, a test that rejects pairs early, and the search for body pairs.",
+                  "gProximity published also uploads its queue array for every batch; queue_bytes has its size. Records without setting sizes have a K40c's "
+                  "launch geometry and batches of 30 body pairs. Composed rows add the measured upload of the array that the release would allocate on this device to each batch.",
+                  "The published presets keep of ours: rounding = safe, contact_rule = opposing, a test that rejects pairs early. Records with broad = sphere find body pairs by balls, the release by boxes.",
                   "Column total is the paper's for whole simulations; we do not simulate with gProximity. launches counts every kernel, launches_as_theirs as "
                   "the release does: a refit and a balance are one each.",))
 

@@ -5,7 +5,8 @@ import math
 import statistics
 
 from .. import resampling
-from .quantities import NotMeasured, disturbed_rounds, frame_range, seconds_by_round
+from .quantities import NotMeasured, batches_of, disturbed_rounds, frame_range, seconds_by_round
+from .ratios import common_frames, frames_text
 from .rules import Measured
 
 
@@ -25,9 +26,20 @@ def uploads_of(arrays):
     return [seconds for uploads, _ in found for seconds in uploads], sum(left_out for _, left_out in found)
 
 
-def middle_sum(cell, name):
-    """Sum over the records of a cell of the median of a time over all rounds."""
-    return sum(statistics.median(seconds_by_round(record, name, frame_range(record)).values() or [0.0]) for record in cell.records)
+def _middle_sum(records, name):
+    """Sum over (record, frames) of the median of a time over all rounds."""
+    return sum(statistics.median(list(seconds_by_round(record, name, frames).values()) or [0.0]) for record, frames in records)
+
+
+def _all_frames(cell):
+    return [(record, frame_range(record)) for record in cell.records]
+
+
+def _batches(records):
+    found = [batches_of(record, frames) for record, frames in records]
+    if not all(found):
+        raise NotMeasured("the number of batches was not recorded")
+    return sum(found)
 
 
 def _with_interval(values, left_out, locations, frames):
@@ -38,26 +50,21 @@ def _with_interval(values, left_out, locations, frames):
     return Measured(statistics.median(values), low, high, len(values), left_out, basis, frames, locations)
 
 
-def _batches(cell):
-    if not cell.batches:
-        raise NotMeasured("the number of batches was not recorded")
-    return cell.batches
-
-
 def ratio_with_array(other, other_name, own, own_name, arrays):
-    """A time of `other`, with an upload of the whole array for each of its batches, over a time of `own`."""
-    if (other.first, other.last, other.frames) != (own.first, own.last, own.frames):
-        raise NotMeasured("the cells have different frames")
+    """A time of `other`, with an upload of the whole array for each of its batches, over a time of `own` in their common frames."""
+    pairs = common_frames(other, own)
+    above, below = [(a, frames) for a, _, frames in pairs], [(b, frames) for _, b, frames in pairs]
     uploads, left_out = uploads_of(arrays)
-    base, below = middle_sum(other, other_name), middle_sum(own, own_name)
-    values = [(base + _batches(other) * upload) / below for upload in uploads]
-    return _with_interval(values, left_out, (own.locations[0], other.locations[0], *(cell.locations[0] for cell in arrays)), f"{own.frames} of {own.first}:{own.last}")
+    base, divisor, batches = _middle_sum(above, other_name), _middle_sum(below, own_name), _batches(above)
+    values = [(base + batches * upload) / divisor for upload in uploads]
+    return _with_interval(values, left_out, (own.locations[0], other.locations[0], *(cell.locations[0] for cell in arrays)), frames_text(pairs))
 
 
 def share_with_array(other, above_name, below_name, arrays):
     """A time of a cell over another time of it, both with an upload of the whole array for each batch."""
     uploads, left_out = uploads_of(arrays)
-    above, below, batches = middle_sum(other, above_name), middle_sum(other, below_name), _batches(other)
+    records = _all_frames(other)
+    above, below, batches = _middle_sum(records, above_name), _middle_sum(records, below_name), _batches(records)
     values = [(above + batches * upload) / (below + batches * upload) for upload in uploads]
     return _with_interval(values, left_out, (other.locations[0], *(cell.locations[0] for cell in arrays)), f"{other.frames} of {other.first}:{other.last}")
 

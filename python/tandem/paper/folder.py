@@ -6,7 +6,7 @@ import json
 import pathlib
 
 from .. import lines
-from .quantities import disturbed_rounds, release_launches, rounds_of
+from .quantities import batches_of, disturbed_rounds, frame_range, release_launches, rounds_of
 
 SCENES = ("funnel", "glasses", "colosseum", "plates", "tower")
 STEPS_OF_TABLES = 102  # frames 20 to 121 of the paper's Tables 4 and 5
@@ -79,9 +79,9 @@ class MeasuredCells:
 
     @property
     def batches(self):
-        """Number of batches of gProximity, which processes a limited number of body pairs at a time (setting batch)."""
-        size = int(self.settings.get("batch") or 0)
-        return sum(-(-pairs // size) for r in self.records for pairs in (r["work"] or {}).get("body_pairs") or []) if size else None
+        """Number of batches of gProximity in all frames; None if a batch has all body pairs or their number is unknown."""
+        found = [batches_of(r, frame_range(r)) for r in self.records]
+        return sum(found) if all(found) else None
 
     def per_frame(self, name, where="device_ns"):
         """Pairs (frame, seconds) of all frames."""

@@ -83,12 +83,12 @@ def count(claim, folder, scene, k):
 
 
 def _arrays(claim, folder):
-    """The cells with the release's whole queue array, one of each step that has it: those with the largest array."""
+    """The cells with a whole queue array, one of each step that has it: those with the largest array."""
     side = claim.fields["array"]
     preset = claim.wanted(side, "8")["preset"]
     cells = [case for step in side["step"] for case in folder.cases(step) if case.algorithm == "gproximity" and case.preset == preset]
     if not cells:
-        raise NotMeasured("no record with the release's whole queue array")
+        raise NotMeasured(claim.fields.get("without", "no record with the release's whole queue array"))
     size = lambda case: math.inf if case.settings["queue_bytes"] == "device" else int(case.settings["queue_bytes"])
     return [case for case in cells if size(case) == max(map(size, cells))]
 

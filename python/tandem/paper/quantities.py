@@ -144,3 +144,23 @@ def count_of(record, name, frames):
     if found is None:
         raise NotMeasured("the records have no such count")
     return found
+
+
+def _batch_size(record):
+    """Body pairs of a batch of gProximity; 0 if a batch has all. With sizes=release a batch has a body pair for each group, of which the release
+    launches as many as 2048 work-items for each compute unit make (its rule for the global size)."""
+    settings = record["settings"]
+    size = int(settings.get("batch") or 0)
+    if size == 0 and settings.get("sizes") == "release":
+        local = int(settings["group_size"])
+        size = max(2048 * record["devices"][0]["compute_units"], local) // local
+    return size
+
+
+def batches_of(record, frames):
+    """Number of batches of gProximity in these frames, which takes a limited number of body pairs at a time; None if unknown."""
+    size, pairs = _batch_size(record), (record["work"] or {}).get("body_pairs")
+    if not size or not pairs:
+        return None
+    places = _places(record, frames)
+    return sum(-(-count // size) for count in (pairs if places is None else (pairs[i] for i in places)))
