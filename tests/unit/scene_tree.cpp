@@ -224,8 +224,8 @@ TEST_P(SceneTrees, OfDegenerateScenesAreRight) {
     Positions line, far(100, {0, 0, 0});
     for (int i = 0; i < 70; ++i) line.emplace_back(i, 0, 0);
     far.emplace_back(1e30, 0, 0);
-    for (const auto& positions :
-         {Positions(1), Positions(2), Positions(77), line, far, Positions{{0, 0, 0}, {5, 0, 0}, {5, 0, 0}}})
+    for (const auto& positions : {Positions(1, {0, 0, 0}), Positions(2, {0, 0, 0}), Positions(77, {0, 0, 0}),
+                                  line, far, Positions{{0, 0, 0}, {5, 0, 0}, {5, 0, 0}}})
         for (const bool apart : {false, true}) {
             SCOPED_TRACE(fmt::format("{} tetrahedra, apart: {}", positions.size(), apart));
             const auto scene = tetrahedra(positions, apart);
