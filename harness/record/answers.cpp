@@ -94,9 +94,8 @@ Fields<CellRecord> effort_fields() {
         {"rebuilds",
          count(),
          "walks of the last sample because no list of an earlier frame was valid (algorithm listed), or "
-         "walks "
-         "whose frame built the tree (leaf_query with tree=scene), over all frames and devices; 0 for other "
-         "walks; records from before it have none",
+         "walks whose frame built the tree (leaf_query with tree=scene), over all frames and devices; 0 for "
+         "other walks; records from before it have none",
          [](auto& r) { return r.m.samples.empty() ? 0 : r.m.samples.back().rebuilds; },
          {.optional = true}},
         {"batches", nullable(integer_from(0)),
