@@ -40,17 +40,6 @@ Fields<CellRecord> found_fields() {
         {"candidate_pairs", counts(), "pairs of tetrahedra whose leaf k-DOPs overlap, by frame",
          [](auto& r) { return r.m.candidate_pairs; }},
         {"contacts", counts(), "contacts, by frame", [](auto& r) { return r.m.contacts; }},
-        {"dropped_body_pairs",
-         counts(),
-         "body pairs with overlapping root k-DOPs that broad=sphere_boxes leaves out, by frame, counted with "
-         "the reference; empty without it and for other broad phases; records from before it have none",
-         [](auto& r) { return r.m.dropped_body_pairs; },
-         {.optional = true}},
-        {"dropped_candidate_pairs",
-         counts(),
-         "candidate pairs of the dropped body pairs, by frame; records from before it have none",
-         [](auto& r) { return r.m.dropped_candidate_pairs; },
-         {.optional = true}},
         {"digest",
          digest_type(),
          "of the candidate pairs, summed over frames, compared with a reference or not; a and b are 0 with "
@@ -93,9 +82,8 @@ Fields<CellRecord> effort_fields() {
          [](auto& r) { return r.m.retries; }},
         {"rebuilds",
          count(),
-         "walks of the last sample because no list of an earlier frame was valid (algorithm listed), or "
-         "walks whose frame built the tree (leaf_query with tree=scene), over all frames and devices; 0 for "
-         "other walks; records from before it have none",
+         "walks of the last sample without a valid list (algorithm listed) or a kept tree (leaf_query with "
+         "tree=scene), over all frames and devices; 0 for other walks; records from before it have none",
          [](auto& r) { return r.m.samples.empty() ? 0 : r.m.samples.back().rebuilds; },
          {.optional = true}},
         {"batches", nullable(integer_from(0)),
