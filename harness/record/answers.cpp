@@ -40,6 +40,17 @@ Fields<CellRecord> found_fields() {
         {"candidate_pairs", counts(), "pairs of tetrahedra whose leaf k-DOPs overlap, by frame",
          [](auto& r) { return r.m.candidate_pairs; }},
         {"contacts", counts(), "contacts, by frame", [](auto& r) { return r.m.contacts; }},
+        {"dropped_body_pairs",
+         counts(),
+         "body pairs with overlapping root k-DOPs that broad=sphere_boxes leaves out, by frame, counted with "
+         "the reference; empty without it and for other broad phases; records from before it have none",
+         [](auto& r) { return r.m.dropped_body_pairs; },
+         {.optional = true}},
+        {"dropped_candidate_pairs",
+         counts(),
+         "candidate pairs of the dropped body pairs, by frame; records from before it have none",
+         [](auto& r) { return r.m.dropped_candidate_pairs; },
+         {.optional = true}},
         {"digest",
          digest_type(),
          "of the candidate pairs, summed over frames, compared with a reference or not; a and b are 0 with "
