@@ -4,6 +4,7 @@
 (tandem.answer, scripts/tried, scripts/pictures). Also checks the committed microbenchmarks."""
 import collections
 import copy
+import functools
 import json
 import re
 import shutil
@@ -53,6 +54,23 @@ class Pages(ScriptCase):
             for path in pictures:
                 self.assertTrue((page.parent / path).is_file(), path)
 
+    def tables_of_schedules(self):
+        """Their page too; and what files of something else give."""
+        folder, copy = SOURCE / "results/h100", self.work / "schedules.md"
+        text = (folder / "README.md").read_text()
+        copy.write_text(re.sub(r"(<!-- schedules: [a-z ]+ -->).*?<!-- end -->", r"\1 <!-- end -->", text, flags=re.DOTALL))
+        self.assertNotEqual(copy.read_text(), text)
+        files = folder / "schedules.jsonl", folder / "published.jsonl"
+        self.assertEqual(script("schedules", *files, "--write", copy), (0, "", []))
+        self.assertEqual(copy.read_text(), text)
+        # Composed by hand: 761 batches of 30 of the 22,824 body pairs, and the upload of one of the ten batches that were measured.
+        records = [record for record in committed("h100/published.jsonl") if "glasses" in record["scene"]["key"]]
+        small, part = (next(r for r in records if r["settings"].get("queue_bytes") == size) for size in ("4194304", "3019898880"))
+        middle = lambda record, *path: sorted(functools.reduce(dict.get, path, record)["samples"])[1] / 1e6
+        whole = middle(small, "total_ns") + 761 * middle(part, "stages", "write", "host_ns") / 10
+        self.assertIn(f"| {whole:,.0f} (composed)", text)
+        self.refused("schedules", "is not JSON", copy, files[1])
+
     def test_tables_of_pages_equal_the_records(self):
         plan = SOURCE / "results/h200/plan.jsonl"
         for page in ("README.md", "results/h200/README.md"):
@@ -63,6 +81,7 @@ class Pages(ScriptCase):
             self.assertNotEqual(copy.read_text(), text)
             self.assertEqual(script("answer", plan, "--write", copy), (0, "", []))
             self.assertEqual(copy.read_text(), text, page)
+        self.tables_of_schedules()
         copy.write_text("<!-- answer: nothing -->\n<!-- end -->\n")
         pile = SOURCE / "results/h200/pile.jsonl"
         for arguments, expected in (((plan, "--write", copy), "no table 'nothing'"), ((plan, "--write", self.work / "none.md"), "none.md: cannot be read"),

@@ -17,7 +17,8 @@ from program import SOURCE, Case
 sys.dont_write_bytecode = True
 sys.path[:0] = [str(SOURCE / "scripts"), str(SOURCE / "python")]
 # other names are those of scripts
-MODULES = {"tables": "tandem.tables", "figures": "tandem.error_figures", "answer": "tandem.answer"}
+MODULES = {"tables": "tandem.tables", "figures": "tandem.error_figures", "answer": "tandem.answer",
+           "schedules": "tandem.schedules"}
 
 
 def loaded(name, scripts={}):
