@@ -48,7 +48,7 @@ class Extension(Case):
 
     def test_it_is_checked(self):
         devices = ("host", "opencl:0")
-        status, out, errors = tandem("check", SCENE, "--device", ",".join(devices))
+        status, out, errors = tandem("check", SCENE, "--device", ",".join(devices), "--preset", "grouped,fair,resident")
         self.assertEqual((status, errors), (0, []), out)
         rows = [line.split() for line in out.splitlines() if line.split()[:1] and line.split()[0] in devices]
         own = [row for row in rows if row[1] == "lbvh"]

@@ -83,7 +83,7 @@ class Plans(PlanCase):
 
     def test_impossible_combinations(self):
         fields = {"scenes": SMALL, "algorithms": ["gproximity", "tiled"], "settings": {"batch": [0, 1]}}
-        self.bad("goes with batch=0", "run", self.plan(**fields), "--dry-run")
+        self.bad("goes with sizes=own, batch=0", "run", self.plan(**fields), "--dry-run")
         cells = self.listed(self.plan(**fields, impossible="skip"))
         self.assertEqual([cell[0] for cell in cells], ["gproximity", "tiled"])
         self.assertIn("skipped 1 impossible combination: ", self.errors[0])

@@ -118,20 +118,25 @@ int check_hard(const RunOptions& options, const std::vector<Cell>& cells,
     return code;
 }
 
-/// Replaces the queue arrays that take a part of the device's memory. Answers do not depend on their size,
-/// and an upload of gigabytes a batch would take most of a check.
-std::vector<Cell> with_small_queues(std::vector<Cell> cells) {
+/// Replaces queue arrays that are larger than the default, unless the request names their size. Answers do
+/// not depend on it, and uploads of gigabytes a batch would take most of a check.
+std::vector<Cell> with_small_queues(std::vector<Cell> cells, const Request& request) {
+    constexpr std::string_view name = "queue_bytes";
+    if (std::ranges::any_of(request.sets, [&](const auto& set) { return set.first == name; })) return cells;
     for (auto& cell : cells)
-        for (const auto* parameter : cell.algorithm->parameters())
-            if (parameter->name == "queue_bytes" && cell.settings.text(parameter->name) == "device")
-                cell.settings.set({parameter, 4 << 20});
+        for (const auto* parameter : cell.algorithm->parameters()) {
+            if (parameter->name != name) continue;
+            const auto bytes = parameter->parse(cell.settings.text(name));
+            const bool is_of_device = bytes < parameter->least;
+            if (is_of_device || bytes > parameter->initial) cell.settings.set({parameter, 4 << 20});
+        }
     return cells;
 }
 
 /// The cells of a check. A request without presets asks for all of them: those that its settings do not suit
 /// are left out, with a line for each reason, unless none is left.
 std::vector<Cell> plan_check(Request request, std::span<const DeviceGroup> devices) {
-    if (!request.presets.empty()) return with_small_queues(plan(request, devices));
+    if (!request.presets.empty()) return with_small_queues(plan(request, devices), request);
     request.presets.emplace_back("all");
     std::vector<std::string> reasons;
     std::size_t left_out = 0;
@@ -143,7 +148,7 @@ std::vector<Cell> plan_check(Request request, std::span<const DeviceGroup> devic
     if (left_out > 0)
         print_message("tandem: {} of {} cells left out: {}\n", left_out, left_out + cells.size(),
                       fmt::join(reasons, "; "));
-    return with_small_queues(std::move(cells));
+    return with_small_queues(std::move(cells), request);
 }
 
 } // namespace
@@ -155,7 +160,8 @@ int check_command(const RunOptions& options) {
     check_required(backends, options.require);
     const auto devices = open_devices(options, backends, request.devices);
     const auto scenes = expand_hard(options.scene);
-    if (scenes.size() > 1) return check_hard(options, with_small_queues(plan(request, devices)), scenes);
+    if (scenes.size() > 1)
+        return check_hard(options, with_small_queues(plan(request, devices), request), scenes);
     const auto job = open_job(options, plan_check(request, devices));
     RecordFile file(options.out);
     print_scene(job.scene, job.range);
