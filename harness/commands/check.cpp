@@ -133,10 +133,20 @@ std::vector<Cell> with_small_queues(std::vector<Cell> cells, const Request& requ
     return cells;
 }
 
+/// Throws InputError for a value that its setting cannot have in any cell.
+void check_values(const Request& request) {
+    for (const auto& [name, values] : request.sets)
+        for (const auto* traversal : algorithms())
+            for (const auto* parameter : traversal->parameters())
+                if (parameter->name == name)
+                    for (const auto& value : values) parameter->parse(value);
+}
+
 /// The cells of a check. A request without presets asks for all of them: those that its settings do not suit
 /// are left out, with a line for each reason, unless none is left.
 std::vector<Cell> plan_check(Request request, std::span<const DeviceGroup> devices) {
     if (!request.presets.empty()) return with_small_queues(plan(request, devices), request);
+    check_values(request);
     request.presets.emplace_back("all");
     std::vector<std::string> reasons;
     std::size_t left_out = 0;

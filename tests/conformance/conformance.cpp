@@ -219,7 +219,7 @@ TEST_P(Conformance, EveryPreset) {
     for (const auto* traversal : algorithms()) {
         for (const auto& p : traversal->presets()) {
             auto given = p.texts();
-            if (given.contains("groups"))
+            if (declares(*traversal, "queue_bytes"))
                 given["queue_bytes"] = "1048576"; // 64 MiB a batch would only cost time
             std::uint64_t pairs = 0;
             std::uint64_t contacts = 0;
