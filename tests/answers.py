@@ -58,6 +58,16 @@ class Answers(Case):
         self.bad("does not go with residency=published", *asked, "--preset", "published")
         self.bad("is impossible; choose one of any, canonical", *asked[:-1], "order=sorted")
 
+    def test_cells_of_other_body_pairs_are_not_compared(self):
+        """No verdict tells the fastest of cells that walk other body pairs; of others it does."""
+        cell = ("run", "pile:bodies=8,frames=1", "--device", "host", "--algorithm", "chunked", "--set", "k=8", "--repeat", 1)
+        for values, verdicts in (("broad=sphere,sphere_boxes",), 0), (("broad=sphere_boxes", "most_body_pairs=0,3"), 0), (("broad=sphere_boxes", "leaves=8,32"), 1):
+            out = self.work / f"compared-{'-'.join(values)}.jsonl"
+            status, text, errors = tandem(*cell, *(word for value in values for word in ("--set", value)), "--out", out)
+            self.assertEqual((status, errors), (0, []), text)
+            self.assertEqual(len(self.records(out)), 2)
+            self.assertEqual(sum(json.loads(line).get("kind") == "verdict" for line in out.read_text().splitlines()), verdicts, values)
+
     def test_dumps_agree_with_brute_force(self):
         parts = [bar(4, (0, 0, 0)), bar(3, (0.5, 0.25, 0.375))]
         files = [gmsh(self.work / f"part{i}.msh", *part) for i, part in enumerate(parts)]

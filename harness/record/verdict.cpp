@@ -68,10 +68,15 @@ Verdict verdict_of(std::span<const Row> rows, const std::vector<std::size_t>& gr
     return verdict;
 }
 
-/// Whether the broad phase leaves out candidate pairs that others find.
-bool leaves_out_pairs(const SettingTexts& settings) {
-    const auto broad = settings.find("broad");
-    return broad != settings.end() && broad->second == "sphere_boxes";
+/// The body pairs among which a cell finds pairs: all that may meet, or those of boxes of spheres or a part
+/// of these. Cells of different ones do different work.
+std::array<std::string, 3> body_pairs_of(const SettingTexts& settings) {
+    const auto value = [&](const char* name) {
+        const auto found = settings.find(name);
+        return found == settings.end() ? "0" : found->second;
+    };
+    const bool within_boxes = value("broad") == "sphere_boxes";
+    return {within_boxes ? "boxes" : "all", value("first_body_pair"), value("most_body_pairs")};
 }
 
 std::string ratio_text(const RankedCell& cell) {
@@ -92,7 +97,7 @@ bool comparable(const Row& a, const Row& b) {
     };
     if (!is_eligible(a) || !is_eligible(b) || a.cell->devices != b.cell->devices) return false;
     const auto x = a.measurement->settings.texts(), y = b.measurement->settings.texts();
-    if (leaves_out_pairs(x) != leaves_out_pairs(y)) return false;
+    if (body_pairs_of(x) != body_pairs_of(y)) return false;
     return std::ranges::all_of(compared_settings, [&](const char* name) {
         const auto i = x.find(name), j = y.find(name);
         return (i == x.end()) == (j == y.end()) && (i == x.end() || i->second == j->second);
