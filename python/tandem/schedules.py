@@ -17,6 +17,7 @@ from . import cell_rows, kinds, lines, markdown
 from .answer import agrees, inverse, text, with_interval, with_width
 from .commands import Parser, check_packages, run, warn
 from .errors import BadUse
+from .paper.quantities import batch_size
 
 SCENES = {"plates": "plates", "funnel": "funnel", "glasses": "glasses", "tower": "tower",
           "0.05": "2,000 jacks, density 0.05", "0.2": "2,000 jacks, density 0.2"}
@@ -52,12 +53,10 @@ class Cell:
 
 
 def batch_of(record):
-    """Body pairs in a batch of gProximity's published presets, by the rule of the release if the preset derives sizes; None for other cells."""
-    settings = record["settings"]
-    if record["algorithm"] != "gproximity" or settings["residency"] != "published":
+    """Body pairs in a batch of gProximity's published presets; None for other cells."""
+    if record["algorithm"] != "gproximity" or record["settings"]["residency"] != "published":
         return None
-    units = record["devices"][0]["compute_units"]
-    return int(settings["batch"]) or 2048 * units // int(settings["group_size"])
+    return batch_size(record)
 
 
 def read(path, name_of):

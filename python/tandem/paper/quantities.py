@@ -146,7 +146,7 @@ def count_of(record, name, frames):
     return found
 
 
-def _batch_size(record):
+def batch_size(record):
     """Body pairs of a batch of gProximity; 0 if a batch has all. With sizes=release a batch has a body pair for each group, of which the release
     launches as many as 2048 work-items for each compute unit make (its rule for the global size)."""
     settings = record["settings"]
@@ -159,7 +159,7 @@ def _batch_size(record):
 
 def batches_of(record, frames):
     """Number of batches of gProximity in these frames, which takes a limited number of body pairs at a time; None if unknown."""
-    size, pairs = _batch_size(record), (record["work"] or {}).get("body_pairs")
+    size, pairs = batch_size(record), (record["work"] or {}).get("body_pairs")
     if not size or not pairs:
         return None
     places = _places(record, frames)
