@@ -95,6 +95,12 @@ class BadInput(Case):
             self.bad("of 5726623061 items and 2147483648 is the most; lower it, or raise groups", *arguments[:-1], "groups=16",
                      "--set", "queue_bytes=1099511627776")
             before = out.read_bytes()
+            # The array of the release has a quarter of the memory; with a limit of memory it is as large as fits.
+            whole = (*arguments[:-2], "--set", "queue_bytes=device")
+            status, _, errors = tandem(*whole, address_space=2 << 30)
+            self.assertEqual((status, len(errors)), (2, 1), errors)
+            self.assertRegex(errors[0], r"setting queue_bytes=device stands for \d+\.\d\d GB on .* do not fit; give --set queue_bytes=4194304, or --memory")
+            self.assertTrue(out.read_bytes().startswith(before))
             self.bad("queues", *arguments, "--set", "queue_bytes=67108864,1099511627776", code=3)
             self.assertTrue(out.read_bytes().startswith(before))
             records = self.records(out)

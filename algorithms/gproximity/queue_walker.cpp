@@ -30,12 +30,6 @@ constexpr Counter published_bytes{"published_queue_bytes", "bytes",
 constexpr std::array all_counters{counters::bvtt_nodes, counters::seeds, balances, refills, spills, own_bytes,
                                   published_bytes};
 
-} // namespace
-
-std::span<const Counter> queue_counters() { return all_counters; }
-
-namespace {
-
 /// The release allocates three buffers of this size: two arrays of queues and one of pairs. Those of a
 /// processor are in the host's memory, whose free part is known before.
 void refuse_large_array(const BuildContext& context) {
@@ -51,6 +45,8 @@ void refuse_large_array(const BuildContext& context) {
 }
 
 } // namespace
+
+std::span<const Counter> queue_counters() { return all_counters; }
 
 QueueWalker::QueueWalker(const ChunkTrees& trees, const BuildContext& context)
     : trees_(trees), shape_(context.shape), sizes_(queue_sizes(context.settings, context.device.info())) {
