@@ -207,10 +207,6 @@ std::unique_ptr<Session> Traversal::prepare(Device& device, const Scene& scene, 
             fmt::format("{} with residency=published cannot share a frame between ranks: the paper's "
                         "data path has one device; leave residency and preset out",
                         name()));
-    if (settings[tandem::parameters::motion] == Motion::linear)
-        throw InputError(
-            "setting motion=linear does not go with ranks of a job, which exchange bodies of one "
-            "frame; name several devices of one process, or leave motion out");
     if (settings[tandem::parameters::broad] != Broad::device)
         throw InputError(
             fmt::format("setting broad={} does not go with ranks of a job, none of which has all "

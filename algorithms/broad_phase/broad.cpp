@@ -115,7 +115,7 @@ std::size_t BroadSweep::sweep_direction(const std::vector<double>& slabs) const 
     return best;
 }
 
-void BroadSweep::bound(const Frame& frame, std::uint32_t body, double skin, double* slabs) const {
+void BroadSweep::bound_in(const Frame& frame, std::uint32_t body, double skin, double* slabs) const {
     if (scene_.bodies[body].deformable)
         bound_deformed(frame.deformed[body], slabs);
     else
@@ -126,7 +126,7 @@ void BroadSweep::bound(const Frame& frame, std::uint32_t body, double skin, doub
 /// Extends the bounds of a body in a frame by those in its successor and by the path between them.
 void BroadSweep::add_path(const FrameInput& input, std::uint32_t body, double skin, double* slabs) const {
     std::vector<double> next(2 * directions_.size());
-    bound(*input.next, body, skin, next.data());
+    bound_in(*input.next, body, skin, next.data());
     for (std::size_t i = 0; i < next.size(); i += 2) {
         slabs[i] = std::min(slabs[i], next[i]);
         slabs[i + 1] = std::max(slabs[i + 1], next[i + 1]);
@@ -138,13 +138,17 @@ void BroadSweep::add_path(const FrameInput& input, std::uint32_t body, double sk
     if (arc > 0) widen(slabs, arc * shapes_[scene_.bodies[body].mesh].reach * slack + underflow_);
 }
 
+void BroadSweep::bound(const FrameInput& input, std::uint32_t body, double skin, double* slabs) const {
+    bound_in(input.frame, body, skin, slabs);
+    if (input.next != nullptr) add_path(input, body, skin, slabs);
+}
+
 std::vector<BodyPair> BroadSweep::pairs(const FrameInput& input, std::span<const double> skins) const {
     const auto stride = 2 * directions_.size();
     std::vector<double> slabs(scene_.bodies.size() * stride);
     for (std::uint32_t body = 0; body < scene_.bodies.size(); ++body) {
         const double skin = skins.empty() ? 0 : skins[body];
-        bound(input.frame, body, skin, &slabs[body * stride]);
-        if (input.next != nullptr) add_path(input, body, skin, &slabs[body * stride]);
+        bound(input, body, skin, &slabs[body * stride]);
     }
     return swept(slabs);
 }

@@ -27,8 +27,9 @@ public:
     /// Pairs of bodies that are bounded by these balls.
     std::vector<BodyPair> pairs(std::span<const Ball> balls) const;
 
-    /// Writes the bounds of one body: for each axis the lower and the upper end.
-    void bound(const Frame& frame, std::uint32_t body, double skin, double* slabs) const;
+    /// Writes the bounds of one body in a frame, and on its path to the frame's successor: for each axis the
+    /// lower and the upper end.
+    void bound(const FrameInput& input, std::uint32_t body, double skin, double* slabs) const;
     std::size_t axes() const { return directions_.size(); }
 
 private:
@@ -38,6 +39,7 @@ private:
         double reach = 0;  ///< largest distance of a vertex from the mesh's origin
     };
 
+    void bound_in(const Frame& frame, std::uint32_t body, double skin, double* slabs) const;
     void add_path(const FrameInput& input, std::uint32_t body, double skin, double* slabs) const;
     std::vector<BodyPair> swept(const std::vector<double>& slabs) const;
     Shape shape_of(const std::vector<Eigen::Vector3d>& vertices) const;

@@ -37,8 +37,10 @@ DeviceVertexExchange::DeviceVertexExchange(Ranks& ranks, const DeviceInfo& info,
     : ranks_(ranks), scene_(scene) {
     const auto geometry = geometry_of(settings);
     for (const auto& mesh : scene.meshes) bytes_.push_back(used_vertices(mesh) * 4 * real_bytes(geometry));
-    // With placement=exact the host needs the vertices, because it bounds their drift.
+    // With placement=exact the host needs the vertices, because it bounds their drift. With motion=linear
+    // there are vertices of two frames, and it bounds the bodies' paths.
     const bool is_supported = ranks.is_gpu_aware(info) && geometry.placement == Placement::rounded
+                              && geometry.motion == Motion::none
                               && std::ranges::any_of(scene.bodies, &Body::deformable);
     const std::array own{is_supported ? 1 : 0, static_cast<int>(geometry.precision),
                          static_cast<int>(settings[parameters::builder])};

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/distributed/ghost_exchange.h"
 
-#include "algorithms/distributed/bytes.h"
 #include "base/parallel.h"
 
 #include <algorithm>
@@ -55,13 +54,14 @@ GhostExchange::GhostExchange(const Scene& scene, const Geometry& geometry, Ranks
       sent_(static_cast<std::size_t>(ranks.size())),
       received_(static_cast<std::size_t>(ranks.size())),
       ghost_frame_{std::vector<Pose>(scene.bodies.size()),
-                   std::vector<std::vector<Eigen::Vector3d>>(scene.bodies.size())} {
+                   std::vector<std::vector<Eigen::Vector3d>>(scene.bodies.size())},
+      next_ghost_frame_(ghost_frame_) {
     for (std::uint32_t body = 0; body < scene.bodies.size(); ++body)
         if (scene.bodies[body].fixed) fixed_.push_back(body);
 }
 
-bool GhostExchange::is_expired(const Frame& frame, Traffic& traffic) {
-    const bool is_expired_locally = !is_built_ || !tracker_.all_within(frame, sorted_own_, skin_);
+bool GhostExchange::is_expired(const FrameInput& input, Traffic& traffic) {
+    const bool is_expired_locally = !is_built_ || !tracker_.all_within(input, sorted_own_, skin_);
     const auto message = std::array{std::byte{is_expired_locally ? std::uint8_t{1} : std::uint8_t{0}}};
     const auto all = ranks_.gather_to_all(message);
     traffic.bytes += message.size();
@@ -72,13 +72,14 @@ bool GhostExchange::is_expired(const Frame& frame, Traffic& traffic) {
     return any;
 }
 
-std::vector<double> GhostExchange::slabs_of(const BodyIds& bodies, const Frame& frame, double skin) const {
+std::vector<double> GhostExchange::slabs_of(const BodyIds& bodies, const FrameInput& input,
+                                            double skin) const {
     const auto stride = 2 * sweep_.axes();
     std::vector<double> slabs(bodies.size() * stride);
     parallel_for(in_parts(std::span(bodies)).size(), [&](std::size_t part) {
         const auto numbers = in_parts(std::span(bodies))[part];
         for (const auto& body : numbers)
-            sweep_.bound(frame, body, skin * tracker_.ball(body).radius,
+            sweep_.bound(input, body, skin * tracker_.ball(body).radius,
                          &slabs[static_cast<std::size_t>(&body - bodies.data()) * stride]);
     });
     return slabs;
@@ -169,24 +170,25 @@ GhostExchange::BodyIds GhostExchange::select_ghosts(const BodyIds& bodies, const
 
 /// Boxes enclose several bodies and use wide bounds. This keeps the received bodies that overlap the bounds
 /// of an own body, and sends the shorter lists back to the owners.
-void GhostExchange::select_received(const Frame& frame, const std::vector<double>& slabs,
+void GhostExchange::select_received(const FrameInput& input, const std::vector<double>& slabs,
                                     const std::vector<double>& wide, Traffic& traffic) {
-    exchange_states(frame, traffic);
+    exchange_states(input, traffic);
     for (auto& list : received_) {
         tracker_.set_reference(ghost_frame_, list);
-        list = select_ghosts(list, slabs_of(list, ghost_frame_, skin_), slabs, wide);
+        list = select_ghosts(list, slabs_of(list, ghost_input(input), skin_), slabs, wide);
     }
     sent_ = exchange_ids(received_, traffic);
 }
 
-void GhostExchange::rebuild(const std::vector<std::uint32_t>& own, const Frame& frame, Traffic& traffic) {
+void GhostExchange::rebuild(const std::vector<std::uint32_t>& own, const FrameInput& input,
+                            Traffic& traffic) {
     subdomain_ = {own, {}};
     next_.clear();
     sorted_own_ = own;
     std::ranges::sort(sorted_own_);
-    tracker_.set_reference(frame, own);
-    tracker_.set_reference(frame, fixed_);
-    const auto slabs = slabs_of(own, frame, skin_), wide = slabs_of(own, frame, (1 + approach) * skin_);
+    tracker_.set_reference(input.frame, own);
+    tracker_.set_reference(input.frame, fixed_);
+    const auto slabs = slabs_of(own, input, skin_), wide = slabs_of(own, input, (1 + approach) * skin_);
     const auto boxes = exchange_boxes(enclosing_boxes(wide, bodies_per_box, sweep_.axes()), traffic);
     std::vector<BodyIds> lists;
     lists.reserve(boxes.size());
@@ -194,40 +196,55 @@ void GhostExchange::rebuild(const std::vector<std::uint32_t>& own, const Frame& 
         lists.push_back(overlapping_any(own, slabs, from_message<double>(remote)));
     received_ = exchange_ids(lists, traffic);
     sent_ = std::move(lists);
-    select_received(frame, slabs, wide, traffic);
-    select_ghosts(fixed_, slabs_of(fixed_, frame, skin_), slabs, wide);
+    select_received(input, slabs, wide, traffic);
+    select_ghosts(fixed_, slabs_of(fixed_, input, skin_), slabs, wide);
     is_built_ = true;
 }
 
-/// Poses or vertices of these bodies. If the frame skips tetrahedra, their number and list follow, by body.
-Ranks::Bytes GhostExchange::states_message(const BodyIds& bodies, const Frame& frame, bool vertices) const {
-    Ranks::Bytes message;
+void GhostExchange::append_states(Ranks::Bytes& message, const BodyIds& bodies, const Frame& frame,
+                                  bool vertices) const {
     for (const auto body : bodies) {
         if (!scene_.bodies[body].deformable)
             append(message, std::span(&frame.poses[body], 1));
         else if (vertices)
             append(message, std::span(frame.deformed[body]));
     }
-    if (frame.skipped.empty()) return message;
+}
+
+/// Poses or vertices of these bodies, and those of the successor. If the frame skips tetrahedra, their number
+/// and list follow, by body.
+Ranks::Bytes GhostExchange::states_message(const BodyIds& bodies, const FrameInput& input,
+                                           bool vertices) const {
+    Ranks::Bytes message;
+    append_states(message, bodies, input.frame, vertices);
+    if (input.next != nullptr) append_states(message, bodies, *input.next, vertices);
+    if (input.frame.skipped.empty()) return message;
     for (const auto body : bodies) {
-        const std::uint64_t count = frame.skipped[body].size();
+        const std::uint64_t count = input.frame.skipped[body].size();
         append(message, std::span(&count, 1));
-        append(message, std::span(frame.skipped[body]));
+        append(message, std::span(input.frame.skipped[body]));
     }
     return message;
 }
 
-void GhostExchange::read_states(const Ranks::Bytes& message, const BodyIds& bodies, bool vertices) {
-    MessageReader reader(message);
+void GhostExchange::read_states(MessageReader& reader, const BodyIds& bodies, Frame& frame,
+                                bool vertices) const {
     for (const auto body : bodies) {
         if (!scene_.bodies[body].deformable) {
-            reader.read(std::span(&ghost_frame_.poses[body], 1));
+            reader.read(std::span(&frame.poses[body], 1));
         } else if (vertices) {
-            auto& received = ghost_frame_.deformed[body];
+            auto& received = frame.deformed[body];
             received.resize(scene_.meshes[scene_.bodies[body].mesh].vertices.size());
             reader.read(std::span(received));
         }
     }
+}
+
+void GhostExchange::read_message(const Ranks::Bytes& message, const BodyIds& bodies, bool has_next,
+                                 bool vertices) {
+    MessageReader reader(message);
+    read_states(reader, bodies, ghost_frame_, vertices);
+    if (has_next) read_states(reader, bodies, next_ghost_frame_, vertices);
     if (reader.is_at_end() && ghost_frame_.skipped.empty()) return;
     ghost_frame_.skipped.resize(scene_.bodies.size());
     for (const auto body : bodies) {
@@ -237,11 +254,12 @@ void GhostExchange::read_states(const Ranks::Bytes& message, const BodyIds& bodi
     }
 }
 
-void GhostExchange::exchange_states(const Frame& frame, Traffic& traffic, bool vertices) {
+void GhostExchange::exchange_states(const FrameInput& input, Traffic& traffic, bool vertices) {
     std::vector<Ranks::Bytes> out;
-    for (const auto& bodies : sent_) out.push_back(states_message(bodies, frame, vertices));
+    for (const auto& bodies : sent_) out.push_back(states_message(bodies, input, vertices));
     const auto in = exchange_messages(out, traffic);
-    for (std::size_t i = 0; i < in.size(); ++i) read_states(in[i], received_[i], vertices);
+    for (std::size_t i = 0; i < in.size(); ++i)
+        read_message(in[i], received_[i], input.next != nullptr, vertices);
 }
 
 std::vector<GhostExchange::BodyIds> GhostExchange::deformable(const std::vector<BodyIds>& lists) const {

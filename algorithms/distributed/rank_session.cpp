@@ -61,7 +61,8 @@ RankSession::RankSession(const Traversal& traversal, Device& device, const Scene
       ghosts_(scene, geometry_of(settings_), ranks),
       device_exchange_(ranks, device.info(), scene, settings_),
       tracker_(scene),
-      balls_(initial_balls(scene)) {
+      balls_(initial_balls(scene)),
+      has_successors_(settings_[parameters::motion] == Motion::linear) {
     partition_.repartition(balls_);
     // Compilation and allocation take place before the first frame, which is measured.
     Report own;
@@ -98,6 +99,7 @@ void RankSession::build_session(const std::vector<std::uint32_t>& bodies) {
     local_scene_ = local_subscene(scene_, bodies);
     local_frame_ = {std::vector<Pose>(bodies.size()),
                     std::vector<std::vector<Eigen::Vector3d>>(bodies.size())};
+    local_next_ = local_frame_;
     session_ =
         std::make_unique<ResidentSession>(traversal_, *devices_.front(), *local_scene_, settings_, answers);
     if (counts_work_) session_->count_work(true);
@@ -138,25 +140,33 @@ void RankSession::update_device() {
     session_->set_received(received);
 }
 
-/// Copies the states of the subdomain's bodies to the local frame.
-void RankSession::copy_local_frame(const Frame& frame) {
+/// Copies the states of the subdomain's bodies to a local frame.
+void RankSession::copy_local_frame(const Frame& frame, const Frame& ghost_frame, Frame& local_frame) const {
     const auto copy = [&](const std::vector<std::uint32_t>& bodies, const std::vector<std::uint32_t>& local,
                           bool are_own) {
         for (std::size_t i = 0; i < bodies.size(); ++i) {
             const auto number = bodies[i], body = local[i];
             const bool is_local = are_own || scene_.bodies[number].fixed;
-            const auto& from = is_local ? frame : ghosts_.ghost_frame();
-            local_frame_.poses[body] = from.poses[number];
+            const auto& from = is_local ? frame : ghost_frame;
+            local_frame.poses[body] = from.poses[number];
             if (scene_.bodies[number].deformable && (is_local || !device_exchange_.is_enabled()))
-                local_frame_.deformed[body] = from.deformed[number];
+                local_frame.deformed[body] = from.deformed[number];
             const bool skips = !from.skipped.empty() && !from.skipped[number].empty();
-            if (skips) local_frame_.skipped.resize(local_scene_->bodies.size());
-            if (!local_frame_.skipped.empty())
-                local_frame_.skipped[body] = skips ? from.skipped[number] : std::vector<std::uint32_t>{};
+            if (skips) local_frame.skipped.resize(local_scene_->bodies.size());
+            if (!local_frame.skipped.empty())
+                local_frame.skipped[body] = skips ? from.skipped[number] : std::vector<std::uint32_t>{};
         }
     };
     copy(ghosts_.subdomain().own, local_subdomain_.own, true);
     copy(ghosts_.subdomain().ghosts, local_subdomain_.ghosts, false);
+}
+
+/// The same for the successor, which skips the same tetrahedra.
+void RankSession::copy_local_input(const FrameInput& input) {
+    copy_local_frame(input.frame, ghosts_.ghost_frame(), local_frame_);
+    if (input.next == nullptr) return;
+    copy_local_frame(*input.next, ghosts_.next_ghost_frame(), local_next_);
+    local_next_.skipped = local_frame_.skipped;
 }
 
 void RankSession::record_failure(const std::exception& error, Report& own) {
@@ -165,10 +175,10 @@ void RankSession::record_failure(const std::exception& error, Report& own) {
 }
 
 /// Collective: uploads own vertices, then exchanges vertices between devices.
-void RankSession::exchange_vertices(const Frame& frame, GhostExchange::Traffic& traffic, Report& own) {
+void RankSession::exchange_vertices(const FrameInput& input, GhostExchange::Traffic& traffic, Report& own) {
     if (session_ && own.failure.empty()) {
         try {
-            copy_local_frame(frame);
+            copy_local_input(input);
             session_->upload_vertices(local_frame_);
         } catch (const std::exception& error) {
             record_failure(error, own);
@@ -181,12 +191,12 @@ void RankSession::exchange_vertices(const Frame& frame, GhostExchange::Traffic& 
 
 /// Collective: exchanges ghosts. A rank takes part in all exchanges also after an error, which would block
 /// the other ranks otherwise.
-void RankSession::exchange(const Frame& frame, Report& own) {
+void RankSession::exchange(const FrameInput& input, Report& own) {
     const HostWork work(*devices_.front(), Stage::exchange, "bodies of other ranks");
     const auto begin = Clock::now();
     GhostExchange::Traffic traffic;
-    if (ghosts_.is_expired(frame, traffic)) {
-        ghosts_.rebuild(own_bodies(), frame, traffic);
+    if (ghosts_.is_expired(input, traffic)) {
+        ghosts_.rebuild(own_bodies(), input, traffic);
         try {
             update_device();
         } catch (const std::exception& error) {
@@ -195,8 +205,8 @@ void RankSession::exchange(const Frame& frame, Report& own) {
             ghosts_.invalidate();
         }
     }
-    ghosts_.exchange_states(frame, traffic, !device_exchange_.is_enabled());
-    if (device_exchange_.is_enabled()) exchange_vertices(frame, traffic, own);
+    ghosts_.exchange_states(input, traffic, !device_exchange_.is_enabled());
+    if (device_exchange_.is_enabled()) exchange_vertices(input, traffic, own);
     own.work.exchange_ns = ns_since(begin);
     own.work.exchange_bytes = traffic.bytes;
     own.work.messages = traffic.messages;
@@ -205,22 +215,22 @@ void RankSession::exchange(const Frame& frame, Report& own) {
 /// A frame that needs batches needs all vertices in the host's memory. The device exchange is disabled on all
 /// ranks after such a frame.
 FrameResult RankSession::run_local(Report& own) {
-    if (!device_exchange_.is_enabled()) return session_->run(local_frame_);
+    if (!device_exchange_.is_enabled()) return session_->run(local_input());
     try {
-        return session_->run(local_frame_);
+        return session_->run(local_input());
     } catch (const OutOfMemory&) {
         own.needs_batches = true;
     }
     device_exchange_.download_received(ghosts_, session_->bodies(), *local_scene_, local_frame_);
     session_->set_received({});
-    return session_->run(local_frame_);
+    return session_->run(local_input());
 }
 
-void RankSession::run_subdomain(const Frame& frame, FrameResult& result, Report& own) {
+void RankSession::run_subdomain(const FrameInput& input, FrameResult& result, Report& own) {
     if (!own.failure.empty() || !session_) return;
     const auto begin = Clock::now();
     try {
-        if (!device_exchange_.is_enabled()) copy_local_frame(frame); // includes the received states
+        if (!device_exchange_.is_enabled()) copy_local_input(input); // includes the received states
         result = run_local(own);
     } catch (const std::exception& error) {
         record_failure(error, own);
@@ -309,12 +319,11 @@ void RankSession::repartition_if_needed(const Frame& frame, FrameResult& result)
 
 FrameResult RankSession::do_run(const FrameInput& input,
                                 std::optional<std::span<const BodyPair>> body_pairs) {
-    const auto& frame = input.frame;
     if (body_pairs) throw InputError("run() was given body pairs, which ranks of a job find themselves");
     Report own;
     FrameResult result;
-    exchange(frame, own);
-    run_subdomain(frame, result, own);
+    exchange(input, own);
+    run_subdomain(input, result, own);
     const auto all = gather_reports(own);
     if (std::ranges::any_of(all, &Report::needs_batches)) {
         device_exchange_.disable();
@@ -327,7 +336,7 @@ FrameResult RankSession::do_run(const FrameInput& input,
         result.shared.push_back(report.work);
         is_representative = is_representative && report.is_representative;
     }
-    if (is_representative) repartition_if_needed(frame, result);
+    if (is_representative) repartition_if_needed(input.frame, result);
     return result;
 }
 

@@ -52,12 +52,14 @@ private:
     void build_session_for(const std::vector<std::uint32_t>& needed);
     void build_session(const std::vector<std::uint32_t>& bodies);
     void discard_session();
-    void exchange(const Frame& frame, Report& own);
+    void exchange(const FrameInput& input, Report& own);
     static void record_failure(const std::exception& error, Report& own);
-    void copy_local_frame(const Frame& frame);
-    void exchange_vertices(const Frame& frame, GhostExchange::Traffic& traffic, Report& own);
+    FrameInput local_input() const { return {local_frame_, has_successors_ ? &local_next_ : nullptr}; }
+    void copy_local_input(const FrameInput& input);
+    void copy_local_frame(const Frame& frame, const Frame& ghost_frame, Frame& local_frame) const;
+    void exchange_vertices(const FrameInput& input, GhostExchange::Traffic& traffic, Report& own);
     FrameResult run_local(Report& own);
-    void run_subdomain(const Frame& frame, FrameResult& result, Report& own);
+    void run_subdomain(const FrameInput& input, FrameResult& result, Report& own);
     std::vector<Report> gather_reports(const Report& own);
     void throw_failure(const std::vector<Report>& all) const;
     Ranks::Bytes calibration_message(const Frame& frame, const FrameResult& result);
@@ -75,7 +77,8 @@ private:
     DisplacementTracker tracker_;
     std::vector<Ball> balls_;                  ///< by body, at the last partition
     std::shared_ptr<const Scene> local_scene_; ///< the bodies on the device; null without a session
-    Frame local_frame_;                        ///< of local_scene_
+    Frame local_frame_, local_next_;           ///< of local_scene_
+    bool has_successors_;                      ///< the session has motion=linear, which uses local_next_
     Subdomain local_subdomain_;                ///< that of ghosts_, with indices in local_scene_
     std::unique_ptr<ResidentSession> session_; ///< null when this rank owns no bodies
     std::uint64_t expected_pairs_ = 0;         ///< of this rank after a repartition; 0: unknown

@@ -3,14 +3,9 @@
 // every pair is found once, and an error of one rank is an error of all. Every rank runs every test.
 #include "algorithms/answer/digest.h"
 #include "algorithms/bodies/ball.h"
-#include "algorithms/distributed/bytes.h"
-#include "algorithms/distributed/rank_session.h"
 #include "base/error.h"
-#include "tests/ranks/job.h"
-#include "tests/support/cells.h"
-#include "tests/support/scenes.h"
+#include "tests/ranks/support.h"
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <map>
@@ -18,62 +13,6 @@
 namespace tandem {
 
 namespace {
-
-using namespace support;
-
-/// The rank's own device: host, or a GPU each if TANDEM_TEST_RANKS_ON is cuda.
-Device& own_device() {
-    const auto* on = std::getenv("TANDEM_TEST_RANKS_ON");
-    return device(on == nullptr ? "host" : fmt::format("{}:{}", on, job->rank()));
-}
-
-Settings settings_of(const Traversal& traversal, const SettingTexts& given = {}) {
-    return resolve(traversal.parameters(), traversal.presets().front().values, given, traversal.name());
-}
-
-/// Sum over all ranks.
-template<class T>
-T summed(const T& own) {
-    T sum{};
-    const auto all = job->gather_to_all(std::as_bytes(std::span(&own, 1)));
-    for (const auto& bytes : all) sum += MessageReader(bytes).read<T>();
-    return sum;
-}
-
-/// The part of a frame that a rank has to provide. All other bodies are moved far away, so using them by
-/// mistake changes the answer.
-Frame own_frame(const Scene& scene, const Session& session, std::size_t number) {
-    auto frame = scene.frame(number);
-    std::vector<bool> is_own(scene.bodies.size());
-    const auto own = session.owned().value();
-    for (const auto body : own) is_own[body] = true;
-    for (std::size_t body = 0; body < scene.bodies.size(); ++body) {
-        if (is_own[body] || scene.bodies[body].fixed) continue;
-        frame.poses[body].translation = {1e6, 0, 0};
-        frame.deformed[body].clear();
-        if (!frame.skipped.empty()) frame.skipped[body].clear();
-    }
-    return frame;
-}
-
-/// A procession in which all bodies except the fixed one and every fifth are deformable.
-Scene soft_procession(std::uint32_t bodies, std::size_t frames, double step) {
-    auto scene = procession(bodies, frames, step);
-    const auto vertices = scene.meshes.front().vertices;
-    for (std::uint32_t body = 1; body < bodies; ++body) scene.bodies[body].deformable = body % 5 != 0;
-    scene.frame = [whole = scene.frame, vertices](std::size_t number) {
-        auto frame = whole(number);
-        for (std::uint32_t body = 2; body < frame.poses.size(); ++body) {
-            if (body % 5 == 0) continue;
-            const auto pose = std::exchange(frame.poses[body], {});
-            for (const auto& vertex : vertices)
-                frame.deformed[body].push_back(pose.rotation * vertex + pose.translation);
-        }
-        return frame;
-    };
-    scene.digest = digest_of(scene);
-    return scene;
-}
 
 /// Tetrahedra in a lattice with `side` of them along each axis; neighbours in a row touch.
 Scene lattice(std::uint32_t side) {
@@ -92,41 +31,6 @@ Scene lattice(std::uint32_t side) {
     scene.digest = digest_of(scene);
     return scene;
 }
-
-class RankSessions : public testing::Test {
-protected:
-    /// Compares a frame run by all ranks with one that this rank runs alone on another session.
-    void expect_equal(const Scene& scene, Session& session, Session& alone, std::size_t number) {
-        const auto result = session.run(own_frame(scene, session, number));
-        const auto right = alone.run(scene.frame(number));
-        ASSERT_GT(right.count, 0u);
-        EXPECT_EQ(summed(result.count), right.count);
-        EXPECT_EQ(summed(result.body_pairs), right.body_pairs);
-        EXPECT_EQ(summed(result.contacts), right.contacts);
-        EXPECT_EQ(summed(result.digest()), right.digest());
-        EXPECT_EQ(summed(result.contact_digest()), right.contact_digest());
-        ASSERT_EQ(result.shared.size(), static_cast<std::size_t>(job->size()));
-        std::uint64_t pairs = 0;
-        for (const auto& work : result.shared) pairs += work.pairs;
-        EXPECT_EQ(pairs, right.count);
-        EXPECT_EQ(result.shared[static_cast<std::size_t>(job->rank())].pairs, result.count);
-        last_ = result;
-    }
-    /// Runs frames 0, 1 and 0 again.
-    void expect_frames_equal(const Scene& scene, const Traversal& traversal, Device& on,
-                             const SettingTexts& given = {}) {
-        const auto session = traversal.prepare(on, scene, settings_of(traversal, given), *job);
-        const auto one = alone(traversal, scene, given);
-        for (const std::size_t i : {0u, 1u, 0u}) expect_equal(scene, *session, *one, i);
-    }
-    std::unique_ptr<Session> alone(const Traversal& traversal, const Scene& scene,
-                                   const SettingTexts& given = {}) {
-        const std::array one{&device("host")};
-        return traversal.prepare(one, scene, settings_of(traversal, given));
-    }
-
-    FrameResult last_;
-};
 
 /// Frames in both directions, so ghost bodies change. A deformable body's vertices are exchanged, and results
 /// outlive the session parts that contain them.

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// Setting motion=linear on the ranks of a job: ghosts are the bodies that could meet an own body on the path
+// to the frame's successor.
+#include "base/error.h"
+#include "tests/ranks/support.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace tandem {
+
+namespace {
+
+const SettingTexts swept{{"motion", "linear"}, {"decision", "exact"}};
+
+class RankMotion : public RankSessions {
+protected:
+    void expect_paths_equal(const Scene& scene, const SettingTexts& more = {}) {
+        auto given = swept;
+        given.insert(more.begin(), more.end());
+        for (const auto* traversal : algorithms()) {
+            SCOPED_TRACE(traversal->name());
+            expect_frames_equal(scene, *traversal, own_device(), given);
+        }
+    }
+};
+
+/// From bodies whose ghosts outlast frames to bodies that pass several others on a path.
+TEST_F(RankMotion, CombinedAnswersEqualOneDevice) {
+    for (const double step : {0.02, 0.35, 3.0}) {
+        SCOPED_TRACE(step);
+        expect_paths_equal(soft_procession(24, 3, step));
+    }
+}
+
+/// Neighbours in frames 0 and 1 are the same; halfway every other body passes the next one.
+Scene leaping_row(std::uint32_t bodies) {
+    auto scene = procession(bodies, 3, 0);
+    scene.frame = [bodies](std::size_t number) {
+        Frame frame;
+        frame.deformed.resize(bodies);
+        for (std::uint32_t i = 0; i < bodies; ++i)
+            frame.poses.push_back(
+                {Eigen::Quaterniond::Identity(), {3.0 * i + (i % 2 == 1 && number % 2 == 1 ? 12 : 0), 0, 0}});
+        return frame;
+    };
+    scene.bodies.assign(bodies, Body{});
+    scene.digest = digest_of(scene);
+    return scene;
+}
+
+/// Bodies that overlap in no frame, only on the path between two.
+TEST_F(RankMotion, BodiesMeetOnThePathOnly) {
+    const auto scene = leaping_row(24);
+    const auto still = alone(algorithm("tiled"), scene);
+    EXPECT_EQ(still->run(scene.frame(0)).count + still->run(scene.frame(1)).count, 0u);
+    expect_paths_equal(scene);
+}
+
+/// A deformable body's pairs with itself are found by its owner; rounding bounds of placement=exact hold too.
+TEST_F(RankMotion, SelfPairsAndExactPlacement) {
+    expect_paths_equal(soft_procession(12, 3, 0.1), {{"self", "on"}, {"placement", "exact"}});
+}
+
+/// A tetrahedron that one of two frames skips has no path.
+TEST_F(RankMotion, TetrahedraSkippedInEitherFrame) {
+    auto scene = soft_procession(16, 3, 0.1);
+    scene.frame = [whole = scene.frame](std::size_t number) {
+        auto frame = whole(number);
+        if (number % 2 == 1) return frame;
+        for (std::uint32_t body = 0; body < frame.poses.size(); ++body)
+            frame.skipped.push_back({body % 5, 40u - static_cast<std::uint32_t>(number)});
+        return frame;
+    };
+    expect_paths_equal(scene);
+}
+
+TEST_F(RankMotion, NeedsASuccessor) {
+    const auto scene = procession(6, 2, 0.1);
+    const auto& tiled = algorithm("tiled");
+    const auto session = tiled.prepare(own_device(), scene, settings_of(tiled, swept), *job);
+    EXPECT_THAT([&] { session->run(scene.frame(0)); },
+                testing::ThrowsMessage<InputError>(testing::HasSubstr("needs the frame's successor")));
+    const auto still = tiled.prepare(own_device(), scene, settings_of(tiled), *job);
+    EXPECT_THAT([&] { still->run(scene.frame(0), scene.frame(1)); },
+                testing::ThrowsMessage<InputError>(testing::HasSubstr("set motion=linear")));
+}
+
+} // namespace
+
+} // namespace tandem
