@@ -6,7 +6,6 @@
 #include "base/error.h"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <array>
 #include <fmt/format.h>
 
@@ -14,24 +13,19 @@ namespace tandem {
 
 namespace {
 
-/// The size in bytes of the array that the paper's release allocates for queues: a quarter of the device's
-/// memory, limited to one buffer. Throws InputError when there is no such device.
-std::uint64_t queue_bytes_on(const std::string& device) {
+/// Throws InputError unless there is such a device, and it is one.
+void check_is_one_device(const std::string& device) {
     const auto backends = open_backends(std::array{device}, {});
     const auto group = choose_devices(backends, std::array{device});
     if (group.size() != 1 || group.front().size() != 1)
         throw InputError(
             fmt::format("--device {}: the paper's scenes run on one device; name exactly one", device));
-    const auto& info = group.front().front()->info();
-    return std::min(info.global_bytes / 4, info.max_allocation);
 }
 
 int run_paper(const CLI::App& app, const std::string& device) {
     if (app.count("--output") == 0) throw InputError("no folder for tables and figures; give -o FOLDER");
-    auto words = given_words(app);
-    if (app.count("--draw-only") == 0)
-        words.insert(words.begin(), fmt::format("--queue-bytes={}", queue_bytes_on(device)));
-    return run_external("paper", words);
+    if (app.count("--draw-only") == 0) check_is_one_device(device);
+    return run_external("paper", given_words(app));
 }
 
 } // namespace

@@ -77,7 +77,6 @@ def parsed(arguments):
     parser = argparse.ArgumentParser(prog="tandem paper", description=__doc__)
     parser.add_argument("-o", "--output", required=True)
     parser.add_argument("--device", default="opencl:0")
-    parser.add_argument("--queue-bytes", type=int, default=0, help="bytes of device memory that the paper's release allocates for queues")
     parser.add_argument("--size", default="small")
     parser.add_argument("--steps", default="")
     for name in ("again", "measure-only", "draw-only", "dry-run"):
@@ -93,7 +92,7 @@ def main(arguments, program):
             check_packages("tandem paper", PACKAGES, ", or give --measure-only")  # fails before anything is measured
         if options.draw_only:
             return draw(options.output)
-        steps = measuring.steps_of(options.size, options.device, options.queue_bytes)
+        steps = measuring.steps_of(options.size, options.device)
         first, last = measuring.numbered(options.steps, len(steps))
         folder = measuring.MeasuredFolder(options.output, options.size, options.device, program)
         if options.dry_run:

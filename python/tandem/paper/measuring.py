@@ -47,13 +47,12 @@ def _expanded(value, names):
     return value
 
 
-def steps_of(size, device, queue_bytes):
-    """The steps of a size, "small" or "full", in their order. queue_bytes: size of the queue array of the paper's release on the device, a
-    quarter of its memory, or the largest buffer."""
+def steps_of(size, device):
+    """The steps of a size, "small" or "full", in their order."""
     path = PLANS / f"{size}.json"
     if size not in ("small", "full"):
         raise BadUse(f"--size {size}: give small or full")
-    names = {"device": device, "quarter": str(queue_bytes)}
+    names = {"device": device}
     steps = []
     for one in json.loads(path.read_text())["steps"]:
         plan = _expanded(one["plan"], names) if "plan" in one else None
