@@ -19,7 +19,7 @@ import pandas
 
 import paper_records as made
 from tandem import resampling
-from tandem.paper import claims, paper_numbers
+from tandem.paper import claims, comparison_tables, paper_numbers, simulation_tables
 from tandem.paper.folder import Folder
 from tandem.paper.measures import Declared
 from tandem.paper.methods import names
@@ -28,7 +28,7 @@ from tandem.paper.rules import AGREES, DIFFERS, NOT_SETTLED, UNTESTED, Measured,
 
 COMMITTED = SOURCE / "results/h200/paper"
 OF_CELLS = ("ratio", "count", "composed_ratio", "composed_share", "composed_step")
-OF_SIMULATIONS = ("correlation", "deciles", "median_of_steps")
+OF_SIMULATIONS = ("correlation", "deciles", "median_of_steps", "mean_of_steps")
 SCALE = 10**9
 
 
@@ -143,8 +143,11 @@ class Verdicts(unittest.TestCase):
         contacts = lambda count, steps=made.FULL_STEPS: [made.step(i, contacts_kept=count) for i in range(steps)]
         for claim, steps, verdict in (("grows-with-contacts", growing(50), AGREES), ("grows-with-contacts", growing(-10), DIFFERS), ("grows-with-contacts", constant, UNTESTED),
                                       ("grows-with-contacts", noisy, NOT_SETTLED), ("refit-constant", refit(10**6), AGREES), ("refit-constant", refit(10**7), DIFFERS),
-                                      ("median-contacts", contacts(1_276_800), AGREES), ("median-contacts", contacts(10), DIFFERS), ("median-contacts", contacts(10, 300), UNTESTED)):
-            self.assertEqual(self.verdict(fields[claim], "funnel", "8", {"sim-funnel": made.simulation("funnel", steps)}), verdict, (claim, verdict))
+                                      ("median-contacts", contacts(1_276_800), AGREES), ("median-contacts", contacts(10), DIFFERS), ("median-contacts", contacts(10, 300), UNTESTED),
+                                      ("figure-1", contacts(550_000), AGREES), ("figure-1", contacts(10), DIFFERS), ("figure-2", contacts(351_000), AGREES),
+                                      ("figure-2", contacts(10), DIFFERS), ("figure-2-meteor", contacts(80_000), AGREES), ("figure-2-meteor", contacts(10**6), DIFFERS)):
+            scene = fields[claim]["scenes"][0]
+            self.assertEqual(self.verdict(fields[claim], scene, "8", {f"sim-{scene}": made.simulation(scene, steps)}), verdict, (claim, verdict))
         self.assertEqual(self.verdict(fields["refit-constant"], "funnel", "8", {}), UNTESTED)
 
     def test_composed_steps_flip(self):
@@ -161,6 +164,46 @@ class Verdicts(unittest.TestCase):
         found = [claims.line_of(Declared(fields), self.folder(files(*arguments)), "funnel", "8") for arguments in ((1,), (10**7,), (1, 121), (1, made.FULL_STEPS - 1, 2))]
         self.assertEqual([line.verdict for line in found], [AGREES, DIFFERS, UNTESTED, UNTESTED])
         self.assertIn("contacts differ", found[3].reason)
+
+    def test_a_simulation_is_composed_of_its_recording_and_its_frames(self):
+        """Stages and frames are those of the cell, the solver that of the simulation, in the steps that both have."""
+        wanted = {"algorithm": "chunked", "preset": "published", "k": "8", "residency": "published"}
+        def files(contacts=1, real_ns=5 * 10**6):
+            cell = made.record("funnel", wanted, 1)
+            made.set_quantity(cell, "stages:traverse", [made.FULL_STEPS * 7000])
+            made.set_quantity(cell, "frame", [10**6 * made.FULL_STEPS])
+            cell["frames"] = {"first": 20, "last": 49}
+            steps = [made.step(i, contacts_found=contacts, stages={"traverse": 1}, host={"solve": 10**6 + i, "move": 0}) for i in range(60)]
+            return {"steps-funnel": [cell], "sim-funnel": made.simulation("funnel", steps), "check-funnel": [cell],
+                    "serial-funnel": made.simulation("funnel", [made.step(i, host={"step": real_ns}) for i in range(30)])}
+        folder = self.folder(files())
+        [run] = folder.compositions()
+        self.assertEqual([step["step"] for step in run.steps], list(range(20, 50)))
+        self.assertAlmostEqual(run.host("step"), sum(1e-3 + 3e-3 + 1e-9 * i for i in range(20, 50)))
+        self.assertEqual(run.curve("stage:traverse"), [7e-6] * 30)
+        table = simulation_tables.table3(folder)
+        [row] = [row for row in table.rows if "composed" in row.get("data_path", "")]
+        self.assertEqual((row["steps"], row["data_path"]), ("30 of 20:49", "published, conversion serial, composed"))
+        self.assertAlmostEqual(row["total_min"], 500 / 60 * run.host("step") / 30)
+        self.assertIn("In 10 steps of funnel the composition takes 0.800 times as long", table.notes[-1])
+        self.assertNotIn("composition takes", simulation_tables.table3(self.folder({k: v for k, v in files().items() if k != "serial-funnel"})).notes[-1])
+        self.assertEqual(self.folder(files(contacts=2)).compositions(), [], "steps with other contacts")
+
+    def test_frames_measured_whole_check_compositions(self):
+        """A composed frame over the same frame that was measured with a whole array."""
+        wanted = {"algorithm": "gproximity", "preset": "published-k40c", "k": "8"}
+        def cell(scene, frame_ns, write_ns=0, batches=1):
+            one = made.record(scene, wanted, 3)
+            one["frames"] = {"first": 0, "last": 0}
+            made.set_quantity(one, "frame", [frame_ns] * 3)
+            made.set_quantity(one, "stages:write", [write_ns] * 3)
+            one["work"]["body_pairs"] = [batches]
+            return one
+        files = {"gpus-tower": [cell("tower", SCALE, batches=4)], "whole-tower": [cell("tower", 10 * SCALE, batches=4)],
+                 "array-k40c": [cell("plates", 2 * SCALE, write_ns=2 * SCALE)]}
+        self.assertIn("measured whole: tower 0.900.", comparison_tables.table4(self.folder(files)).notes[-1])
+        del files["array-k40c"]
+        self.assertNotIn("measured whole", comparison_tables.table4(self.folder(files)).notes[-1])
 
     def test_digests_count_where_they_compare(self):
         """One algorithm compares nothing, and neither do answers without pairs."""

@@ -53,7 +53,7 @@ class Paper(unittest.TestCase):
             for scene in ("funnel", "glasses", "colosseum", "plates", "tower"):
                 self.assertIn(f"cells-{scene}", listed)
             self.assertIn("left", listed.splitlines()[-1])
-            self.assertLessEqual(max(step.seconds for step in steps_of(size, "host", 0)), 480)
+            self.assertLessEqual(max(step.seconds for step in steps_of(size, "host")), 480)
 
     def test_bad_use_is_one_line(self):
         for words, says in (((), "no folder"), (("-o", self.folder, "--size", "huge"), "--size huge: give small or full"),
@@ -109,7 +109,7 @@ class Paper(unittest.TestCase):
         self.assertIn("missing", (self.folder / "figure7.csv").read_text())
 
     def test_a_simulation_resumes_from_its_checkpoint(self):
-        [step] = [step for step in steps_of("small", "host", 0) if step.name == "sim-tower"]
+        [step] = [step for step in steps_of("small", "host") if step.name == "sim-tower"]
         folder = MeasuredFolder(self.folder, "small", "host", PROGRAM)
         self.assertNotIn("--resume", folder.words(step))
         (self.folder / "tower.frames.checkpoint").touch()

@@ -28,8 +28,8 @@ def record(scene, wanted, count):
 
 
 def _stage(made, name, values):
-    made["stages"][name] = {"device_ns": {**times(values), "frames": [values[0] / FULL_STEPS] * FULL_STEPS}, "host_ns": times([0] * len(values)), "launches": 0,
-                            "waits": 0, "bytes": 0}
+    made["stages"][name] = {"device_ns": {**times(values), "frames": [values[0] / FULL_STEPS] * FULL_STEPS}, "host_ns": {**times([0] * len(values)), "frames": [0] * FULL_STEPS},
+                            "launches": 0, "waits": 0, "bytes": 0}
 
 
 def set_quantity(made, name, values):

@@ -5,7 +5,7 @@ from .folder import SCENES, STEPS_OF_TABLES, number, paper_table
 from .methods import FOUR, found, four, name_of, names
 from .quantities import NotMeasured
 from .ratios import ratio_of
-from .tables import Table, ordered, paper_rows
+from .tables import Table, ordered, paper_rows, written
 
 COLUMNS = {"frame": "frame", "narrow": "narrow", "read": "stages:read", "write": "stages:write", "launches": "launches", "launches_as_theirs": "release launches"}
 PARTS = ("transform", "refit", "traverse", "contact", "balance", "preprocess", "postprocess", "read", "write")
@@ -71,6 +71,20 @@ def _with_array(scene, other, own, arrays):
         "queue_bytes": arrays[0].settings["queue_bytes"], "records": " ".join(frame.records)}
 
 
+def _composition_note(folder):
+    """How near compositions are to frames that were measured whole, with the array of a K40c."""
+    arrays, texts = folder.cases("array-k40c"), []
+    for scene in SCENES:
+        parts = [case for case in folder.cases(f"gpus-{scene}") if case.preset == "published-k40c"]
+        whole = folder.cases(f"whole-{scene}") or [case for case in arrays if case.scene == scene]
+        if parts and whole and arrays:
+            try:
+                texts.append(f"{scene} {written(composed.ratio_with_array(parts[0], 'frame', whole[0], 'frame', arrays).value)}")
+            except NotMeasured:
+                continue
+    return (f"A composed frame with a K40c's array over the same frame measured whole: {', '.join(texts)}.",) if texts else ()
+
+
 def table4(folder):
     rows = paper_rows(paper_table(4), {"total": "total", "narrow": "narrow", "read": "read", "write": "write", "launches": "launches"})
     for row in rows:
@@ -87,7 +101,7 @@ def table4(folder):
                   "launch geometry and batches of 30 body pairs. Composed rows add the measured upload of the array that the release would allocate on this device to each batch.",
                   "The published presets keep of ours: rounding = safe, contact_rule = opposing, a test that rejects pairs early. Records with broad = sphere find body pairs by balls, the release by boxes.",
                   "Column total is the paper's for whole simulations; we do not simulate with gProximity. launches counts every kernel, launches_as_theirs as "
-                  "the release does: a refit and a balance are one each.",))
+                  "the release does: a refit and a balance are one each.", *_composition_note(folder)))
 
 
 def _paper_rows_of_5():

@@ -8,6 +8,7 @@ from .. import resampling
 from .quantities import NotMeasured, batches_of, disturbed_rounds, frame_range, seconds_by_round
 from .ratios import common_frames, frames_text
 from .rules import Measured
+from .simulation import check_contacts, frames_of
 
 
 def _uploads_of(cell):
@@ -69,35 +70,15 @@ def share_with_array(other, above_name, below_name, arrays):
     return _with_interval(values, left_out, (other.locations[0], *(cell.locations[0] for cell in arrays)), f"{other.frames} of {other.first}:{other.last}")
 
 
-def by_frame(cell, name):
-    """Seconds of a time by frame: the median of the rounds."""
-    found = {}
-    for record in cell.records:
-        first, last = frame_range(record)
-        for frame in range(first, last + 1):
-            values = seconds_by_round(record, name, (frame, frame)).values()
-            found[frame] = statistics.median(values) if values else 0.0
-    return found
-
-
-def _check_contacts(cell, steps):
-    """Raises NotMeasured unless the steps found the contacts of the cell's frames, up to the rounding of other bounds."""
-    for record in cell.records:
-        first, _ = frame_range(record)
-        for frame, contacts in enumerate((record["work"] or {}).get("contacts") or [], first):
-            if frame in steps and abs(contacts - steps[frame]["contacts_found"]) > 0.01 * contacts:
-                raise NotMeasured(f"the simulation is another one: its contacts differ in frame {frame}")
-
-
 def step_share(cell, above_name, run, parts_above, parts_below):
     """The share of a part of a simulated step whose contacts are found as the cell does. The other parts are those of the simulation `run`, which
     found the same contacts. parts_above, parts_below: parts of a step on the host, beside the cell's time and its whole frame."""
-    above, whole = by_frame(cell, above_name), by_frame(cell, "frame")
+    above, whole = frames_of(cell, above_name), frames_of(cell, "frame")
     steps = {step["step"]: step for step in run.steps}
     common = sorted(set(whole) & set(steps))
     if not common:
         raise NotMeasured("the simulation has none of the measured frames")
-    _check_contacts(cell, steps)
+    check_contacts(cell, steps)
     parts = lambda frame, names: sum(steps[frame]["host_ns"][name] for name in names) / 1e9
     found = resampling.ratio_of_sums([whole[f] + parts(f, parts_below) for f in common], [above[f] + parts(f, parts_above) for f in common])
     disturbed = sum(len(disturbed_rounds(record)) for record in cell.records)

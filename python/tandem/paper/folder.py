@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 """Reads a folder of 'tandem paper': steps, cells, simulations, and the paper's own tables."""
-import copy
 import csv
 import json
 import pathlib
 
 from .. import lines
-from .quantities import batches_of, disturbed_rounds, frame_range, release_launches, rounds_of
+from .quantities import NotMeasured, batches_of, disturbed_rounds, frame_range, release_launches, rounds_of
+from .simulation import Simulation, composed
 
 SCENES = ("funnel", "glasses", "colosseum", "plates", "tower")
 STEPS_OF_TABLES = 102  # frames 20 to 121 of the paper's Tables 4 and 5
@@ -92,49 +92,6 @@ class MeasuredCells:
         return sorted(rows)
 
 
-class Simulation:
-    """The steps of the last session of a file of 'tandem simulate --record'."""
-
-    def __init__(self, lines_of_file, name, location):
-        self.name, self.location = name, location
-        # Steps of several sessions, of which each continues the one before. A repeated step replaces the earlier one.
-        steps = {line["step"]: line for line in lines_of_file if line["kind"] == "step"}
-        self.steps = [steps[i] for i in sorted(steps)]
-        self.run = [line for line in lines_of_file if line["kind"] == "run"][-1]
-
-    @property
-    def scene(self):
-        return self.run["scene"]["name"]
-
-    @property
-    def method(self):
-        return f"{self.run['algorithm']} {self.run['preset']}, k = {self.run['settings']['k']}"
-
-    def first(self, count):
-        """The same run, of which only the first `count` steps are used."""
-        shorter = copy.copy(self)
-        shorter.steps = self.steps[:count]
-        return shorter
-
-    def host(self, name):
-        """Seconds of a part on the host; "step" is the total."""
-        return sum(step["host_ns"][name] for step in self.steps) / 1e9
-
-    def stage(self, name, where=None):
-        of = lambda stage: (stage["device_ns"] or stage["host_ns"]) / 1e9 if where is None else stage[where] / (1e9 if where.endswith("_ns") else 1)
-        return sum(of(step["stages"][name]) for step in self.steps if name in step["stages"])
-
-    def curve(self, what):
-        """One number per step. what: a field of a step, or "host:NAME" or "stage:NAME" for seconds."""
-        if ":" not in what:
-            return [step[what] for step in self.steps]
-        kind, name = what.split(":")
-        if kind == "host":
-            return [step["host_ns"][name] / 1e9 for step in self.steps]
-        stages = [step["stages"].get(name, {"device_ns": 0, "host_ns": 0}) for step in self.steps]
-        return [(stage["device_ns"] or stage["host_ns"]) / 1e9 for stage in stages]
-
-
 class Folder:
     def __init__(self, path):
         self.path = pathlib.Path(path)
@@ -202,8 +159,18 @@ class Folder:
                 found.append((path.stem, count, sum(len(rounds_of(record)) for record in records)))
         return found
 
+    def composition(self, scene, step):
+        """The simulation of a scene with the published data path, composed of its recording and of a step with its frames; None without one of them.
+        Raises NotMeasured if they do not belong together."""
+        run = self.simulation(f"sim-{scene}")
+        cells = [case for case in self.cases(step) if (case.algorithm, case.preset) == ("chunked", "published")]
+        return composed(run, cells[0]) if run and cells else None
+
     def simulation(self, step):
-        """The simulation of a step; None if it has not completed, or if its records are gone."""
+        """The simulation of a step, or "composed-SCENE"; None if it has not completed, or if its records are gone."""
+        if step.startswith("composed-"):
+            scene = step.removeprefix("composed-")
+            return self.composition(scene, f"steps-{scene}")
         if step not in self.named(step):
             return None
         lines_of_file = self._json_lines(f"records/{step}.jsonl")
@@ -212,6 +179,16 @@ class Folder:
 
     def simulations(self, beginning):
         return [run for run in map(self.simulation, self.named(beginning)) if run]
+
+    def compositions(self):
+        """The simulations of all scenes that can be composed."""
+        found = []
+        for scene in SCENES:
+            try:
+                found.append(self.composition(scene, f"steps-{scene}"))
+            except NotMeasured:
+                continue
+        return [run for run in found if run]
 
     def ceilings(self):
         found = self._json_lines("records/ceilings.jsonl")

@@ -59,7 +59,8 @@ class Declared:
         return cells
 
     def simulation(self, folder, scene):
-        run = folder.simulation(self.fields["simulation"].replace("{scene}", scene))
+        names = self.fields["simulation"] if isinstance(self.fields["simulation"], list) else [self.fields["simulation"]]
+        run = next(filter(None, (folder.simulation(name.replace("{scene}", scene)) for name in names)), None)
         if run is None:
             raise NotMeasured("no such simulation has completed")
         first, last = self.fields.get("covers", (0, 0))
@@ -173,9 +174,14 @@ def deciles(claim, folder, scene, k):
     return _of_steps(run, of(values), *resampling.bootstrap_interval(len(values), lambda drawn: of(values[drawn])))
 
 
+def mean_of_steps(claim, folder, scene, k):
+    run = claim.simulation(folder, scene)
+    return exact(float(numpy.mean(_curve(run, claim.fields["quantity"]))), (run.location,), f"{len(run.steps)} steps")
+
+
 def median_of_steps(claim, folder, scene, k):
     run = claim.simulation(folder, scene)
     return exact(float(numpy.median(_curve(run, claim.fields["quantity"]))), (run.location,), f"{len(run.steps)} steps")
 
 
-MEASURES = {made.__name__: made for made in (ratio, count, composed_ratio, composed_share, composed_step, digests, chunks, correlation, deciles, median_of_steps)}
+MEASURES = {made.__name__: made for made in (ratio, count, composed_ratio, composed_share, composed_step, digests, chunks, correlation, deciles, median_of_steps, mean_of_steps)}

@@ -47,17 +47,24 @@ def _scaling_of_9(ax, run, colour):
     return fitted
 
 
+def _measured(folder, runs):
+    """The runs; in place of one that can be composed, its composition, whose stages are those of the device."""
+    composed = {run.scene: run for run in folder.compositions()}
+    return [composed.get(run.scene, run) for run in runs]
+
+
 def figure9(folder):
-    runs = folder.simulations("sim-")
+    runs = [run for run in folder.simulations("sim-") if run.scene in SCENES]
     if not runs:
         return missing(folder.path, 9, "Contacts over steps", "no simulation has completed")
     plot = Plot(9, 2, 3.1)
     curves, scaling = plot.axes
     medians = {row["scene"]: number(row["median_contacts_a_step_thousand"]) for row in paper_table(1)}
     exponents = {}
-    for colour, run in zip(COLOURS, runs):
+    for colour, run, measured in zip(COLOURS, runs, _measured(folder, runs)):
         _curves_of_9(curves, run, colour, medians.get(run.scene))
-        exponents[run.scene] = _scaling_of_9(scaling, run, colour)
+        exponents[run.scene] = _scaling_of_9(scaling, measured, colour)
+        run = measured
         columns = zip(run.steps, run.curve("contacts_found"), run.curve("contacts_kept"), device_seconds(run), run.curve("stage:refit"))
         plot.rows += [{"scene": run.scene, "step": step["step"], "contacts": found, "contacts_kept": kept, "traverse_and_contact_ms": 1e3 * t, "refit_ms": 1e3 * refit}
                       for step, found, kept, t, refit in columns]
@@ -81,8 +88,9 @@ def _bars_of_10(runs):
     rows = []
     for scene in SCENES:
         for run in [run for run in runs if run.scene == scene]:
+            path = data_path(run) + (", composed" if run.is_composed else "")
             parts = {name.removesuffix("_percent"): value for name, value in percentages(run).items()}
-            rows.append((f"{scene}, {run.run['devices'][0]['id']}, {data_path(run)}, {len(run.steps)} steps", parts, 1e3 * run.host("step") / len(run.steps), run.location))
+            rows.append((f"{scene}, {run.run['devices'][0]['id']}, {path}, {len(run.steps)} steps", parts, 1e3 * run.host("step") / len(run.steps), run.location))
         for row in [row for row in paper_table(3) if row["gpu"] == GPU and row["scene"] == scene]:
             parts = {part: number(row[f"{part}_percent"]) or 0 for part in PARTS}
             rows.append((f"{scene}, paper's {GPU}, {STEPS_OF_PAPER} steps", parts, 6e4 * number(row["total_min"]) / STEPS_OF_PAPER, "results/paper/table3.csv"))
@@ -90,7 +98,7 @@ def _bars_of_10(runs):
 
 
 def figure10(folder):
-    runs = common_runs(folder)
+    runs = common_runs(folder) + folder.compositions()
     if not runs:
         return missing(folder.path, 10, "What simulations cost", "no simulation has completed")
     rows = _bars_of_10(runs)
@@ -115,7 +123,7 @@ def figure10(folder):
 
 
 def figure11(folder):
-    runs = [run for run in common_runs(folder, ("sim-", "host-")) if run.scene in ("funnel", "glasses")]
+    runs = [run for run in _measured(folder, common_runs(folder, ("sim-", "host-"))) if run.scene in ("funnel", "glasses")]
     runs.sort(key=lambda run: run.scene)
     if not runs:
         return missing(folder.path, 11, "Stages over steps", "no simulation of funnel or glasses has completed")

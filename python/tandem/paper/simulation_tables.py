@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Tables 3, 6 and 7: whole simulations. Runs of one scene are compared over the steps that all of them have."""
-from .folder import Simulation, paper_table
-from .tables import Table, ordered, paper_rows, ratio
+from .folder import paper_table
+from .simulation import composed_share_of
+from .tables import Table, ordered, paper_rows, ratio, written
 
+STEPS = 500  # of the paper's simulations
 KINDS = ("sim-", "host-", "serial-", "parallel-")
-COMMON = "Rows of one scene are sums over the same steps from step 0, as many as its shortest run has (column steps). The paper's are of 500 steps."
+COMMON = ("Rows of one scene are sums over the same steps from step 0, as many as its shortest run has (column steps). The paper's are of 500 steps. Rows with 'composed' "
+          "are frames of that recording, measured with the published path, beside the solver of the recording; their minutes are 500 times the mean step.")
 
 
 def common_runs(folder, kinds=KINDS):
@@ -29,39 +32,58 @@ def data_path(simulation):
     return f"published, conversion {settings.get('convert', 'serial')}" if published else "resident"
 
 
+def _minutes(run, seconds):
+    """Minutes of a sum over the steps of a run; of a composed one for all steps of the paper."""
+    return seconds / 60 * (STEPS / len(run.steps) if run.is_composed else 1)
+
+
 def _row(run, **columns):
-    return {"scene": run.scene, "source": "ours", "device": run.run["devices"][0]["id"], "method": run.method, "data_path": data_path(run), **columns,
-            "steps": len(run.steps), "records": run.location}
+    steps = f"{len(run.steps)} of {run.steps[0]['step']}:{run.steps[-1]['step']}" if run.is_composed else len(run.steps)
+    return {"scene": run.scene, "source": "ours", "device": run.run["devices"][0]["id"], "method": run.method,
+            "data_path": data_path(run) + (", composed" if run.is_composed else ""), **columns, "steps": steps, "records": run.location}
+
+
+def _composition_note(folder):
+    """How near a composition is to a simulation that ran with the published path: of steps that both have."""
+    texts = []
+    for real in folder.simulations("serial-"):
+        scene = real.name.removeprefix("serial-")
+        made = folder.composition(scene, f"check-{scene}")
+        value, count = composed_share_of(real, made) if made else (None, 0)
+        if count:
+            texts.append(f"In {count} steps of {scene} the composition takes {written(value)} times as long as a simulation with the published path.")
+    return tuple(texts)
 
 
 def table3(folder):
     columns = ("solver_percent", "initialization_percent", "broad_percent", "narrow_percent", "contact_reduction_percent")
     rows = paper_rows(paper_table(3), {"total_min": "total_min", **{name: name for name in columns}})
-    rows += [_row(run, total_min=run.host("step") / 60, **percentages(run)) for run in common_runs(folder)]
+    rows += [_row(run, total_min=_minutes(run, run.host("step")), **percentages(run)) for run in common_runs(folder) + folder.compositions()]
     for row in rows:
         row["collision_percent"] = sum(row[name] or 0 for name in columns[1:])
-        row.setdefault("steps", 500)
+        row.setdefault("steps", STEPS)
     return Table(3, "Parts of the time of a simulation", ordered(rows),
                  (COMMON, "The paper's are means of ten runs of its published path; ours are one run each. Our solver, including the assembly of its rows, runs on "
                   "one thread, as the paper's does. It has no relative tolerance and starts from the last step's forces; the paper's stops at a relative "
-                  "tolerance of 0.01. In most steps with many contacts it reaches its limit of 150 passes.",))
+                  "tolerance of 0.01. In most steps with many contacts it reaches its limit of 150 passes.", *_composition_note(folder)))
 
 
 def table6(folder):
     rows = paper_rows(paper_table(6), {name: name for name in ("total_min", "read_min", "write_min", "read_percent", "write_percent")})
-    for run in common_runs(folder):
+    for run in common_runs(folder) + folder.compositions():
         total, read, write = run.host("step"), run.stage("read", "device_ns"), run.stage("write", "device_ns")
-        rows.append(_row(run, total_min=total / 60, read_min=read / 60, write_min=write / 60, read_percent=100 * read / total, write_percent=100 * write / total))
+        rows.append(_row(run, total_min=_minutes(run, total), read_min=_minutes(run, read), write_min=_minutes(run, write), read_percent=100 * read / total, write_percent=100 * write / total))
     for row in rows:
-        row.setdefault("steps", 500)
+        row.setdefault("steps", STEPS)
     return Table(6, "Transfers of a simulation", ordered(rows), (COMMON, "Device times of uploads and downloads."))
 
 
 def table7(folder):
     names = ("transform", "refit", "traverse", "contact")
     rows = paper_rows(paper_table(7), {f"{name}_min": f"{name}_min" for name in names})
-    rows += [_row(run, **{f"{name}_min": run.stage(name) / 60 for name in names}) for run in common_runs(folder, ("sim-", "host-", "serial-"))]
+    runs = common_runs(folder, ("sim-", "host-", "serial-")) + folder.compositions()
+    rows += [_row(run, **{f"{name}_min": _minutes(run, run.stage(name)) for name in names}) for run in runs]
     for row in rows:
         row["traverse_over_contact"] = ratio(row["traverse_min"], row["contact_min"])
-        row.setdefault("steps", 500)
+        row.setdefault("steps", STEPS)
     return Table(7, "Kernels of a simulation", ordered(rows), (COMMON, "Device times; a resident frame of rigid bodies is transformed in its refit."))

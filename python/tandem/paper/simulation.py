@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: MIT
+"""Simulations: those that ran, and those that are composed of a simulation and of its frames, which were measured with the published data path."""
+import copy
+import math
+import statistics
+
+from .quantities import NotMeasured, frame_range, seconds_by_round
+
+SOLVER = ("reduce", "assemble", "solve", "move")  # parts of a step after its contacts are found
+
+
+class Simulation:
+    """The steps of the last session of a file of 'tandem simulate --record'."""
+
+    is_composed = False
+
+    def __init__(self, lines_of_file, name, location):
+        self.name, self.location = name, location
+        # Steps of several sessions, of which each continues the one before. A repeated step replaces the earlier one.
+        steps = {line["step"]: line for line in lines_of_file if line["kind"] == "step"}
+        self.steps = [steps[i] for i in sorted(steps)]
+        self.run = [line for line in lines_of_file if line["kind"] == "run"][-1]
+
+    @property
+    def scene(self):
+        return self.run["scene"]["name"]
+
+    @property
+    def method(self):
+        return f"{self.run['algorithm']} {self.run['preset']}, k = {self.run['settings']['k']}"
+
+    def first(self, count):
+        """The same run, of which only the first `count` steps are used."""
+        shorter = copy.copy(self)
+        shorter.steps = self.steps[:count]
+        return shorter
+
+    def host(self, name):
+        """Seconds of a part on the host; "step" is the total."""
+        return sum(step["host_ns"][name] for step in self.steps) / 1e9
+
+    def stage(self, name, where=None):
+        of = lambda stage: (stage["device_ns"] or stage["host_ns"]) / 1e9 if where is None else stage[where] / (1e9 if where.endswith("_ns") else 1)
+        return sum(of(step["stages"][name]) for step in self.steps if name in step["stages"])
+
+    def curve(self, what):
+        """One number per step. what: a field of a step, or "host:NAME" or "stage:NAME" for seconds."""
+        if ":" not in what:
+            return [step[what] for step in self.steps]
+        kind, name = what.split(":")
+        if kind == "host":
+            return [step["host_ns"][name] / 1e9 for step in self.steps]
+        stages = [step["stages"].get(name, {"device_ns": 0, "host_ns": 0}) for step in self.steps]
+        return [(stage["device_ns"] or stage["host_ns"]) / 1e9 for stage in stages]
+
+
+def frames_of(cell, name):
+    """Seconds of a time by frame: the median of the rounds."""
+    found = {}
+    for record in cell.records:
+        first, last = frame_range(record)
+        for frame in range(first, last + 1):
+            values = seconds_by_round(record, name, (frame, frame)).values()
+            found[frame] = statistics.median(values) if values else 0.0
+    return found
+
+
+def check_contacts(cell, steps):
+    """Raises NotMeasured unless the steps found the contacts of the cell's frames, up to the rounding of other bounds."""
+    for record in cell.records:
+        first, _ = frame_range(record)
+        for frame, contacts in enumerate((record["work"] or {}).get("contacts") or [], first):
+            if frame in steps and abs(contacts - steps[frame]["contacts_found"]) > 0.01 * contacts:
+                raise NotMeasured(f"the simulation is another one: its contacts differ in frame {frame}")
+
+
+def _stages(cell):
+    """{frame: {stage: {"device_ns", "host_ns"}}} of a cell."""
+    found = {}
+    for record in cell.records:
+        first, last = frame_range(record)
+        for frame in range(first, last + 1):
+            at = lambda times: (times["frames"] or [0] * (frame + 1 - first))[frame - first]
+            found[frame] = {name: {where: at(stage[where]) for where in ("device_ns", "host_ns")} for name, stage in record["stages"].items()}
+    return found
+
+
+def _with_frame(step, seconds, stages):
+    """A step whose contacts are found in those seconds and stages."""
+    broad = (stages.get("broad") or {"device_ns": 0, "host_ns": 0})
+    broad_ns = broad["device_ns"] or broad["host_ns"]
+    host = {part: step["host_ns"][part] for part in SOLVER}
+    whole = {"step": 1e9 * seconds + sum(host.values()), "broad": broad_ns, "narrow": max(1e9 * seconds - broad_ns, 0), **host}
+    return {**step, "stages": stages, "host_ns": {**step["host_ns"], **whole}}
+
+
+def composed(run, cell):
+    """The steps of `run` that are frames of `cell`: the cell finds the contacts, and the other parts are those of the run. Raises NotMeasured if the
+    cell has other contacts."""
+    steps = {step["step"]: step for step in run.steps}
+    check_contacts(cell, steps)
+    seconds, stages = frames_of(cell, "frame"), _stages(cell)
+    made = copy.copy(run)
+    made.is_composed, made.name, made.location = True, f"composed-{run.name.removeprefix('sim-')}", f"{run.location} {cell.locations[0]}"
+    made.steps = [_with_frame(steps[frame], seconds[frame], stages[frame]) for frame in sorted(set(seconds) & set(steps))]
+    made.run = {**run.run, "algorithm": cell.algorithm, "preset": cell.preset, "settings": cell.settings, "devices": [cell.device]}
+    return made
+
+
+def composed_share_of(run, composition):
+    """Seconds of composed steps over those of a simulation with the same data path, in the steps that both have: (value, number of steps)."""
+    real = {step["step"]: step["host_ns"]["step"] for step in run.steps}
+    common = [step for step in composition.steps if step["step"] in real]
+    if not common:
+        return math.nan, 0
+    return sum(step["host_ns"]["step"] for step in common) / sum(real[step["step"]] for step in common), len(common)
