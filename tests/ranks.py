@@ -82,6 +82,18 @@ class Plans(RanksCase):
         self.assertEqual((status, errors), (0, []), text)
         self.assertIn(f"8 cells are already in {shared}", text)
 
+    def test_ranks_bound_paths(self):
+        """With motion=linear ghosts are bodies that could be met on the path to the next frame."""
+        alone, shared = self.work / "paths-alone.jsonl", self.work / "paths.jsonl"
+        words = ("run", SCENES[0], "--frames", "0:1", "--device", "host", "--algorithm", "tiled,gproximity", "--set", "motion=linear", "--set", "decision=exact",
+                 "--repeat", 2, "--out")
+        self.assertEqual(tandem(*words, alone)[0], 0)
+        status, text, errors = launch(of(2)(*words, shared))
+        self.assertEqual((status, errors, text.count(": right: ")), (0, [], 2), text)
+        answers = lambda path: {r["algorithm"]: [r["work"][part] for part in ("candidate_pairs", "contacts", "digest", "contact_digest")] for r in self.records(path)}
+        self.assertEqual(answers(shared), answers(alone))
+        self.assertGreater(answers(alone)["tiled"][0][0], 0)
+
     def test_ranks_measure_one_shard_together(self):
         out = self.work / "shard.jsonl"
         self.assertEqual(launch(of(2)("run", self.plan(), "--shard", "1/2", "--out", out))[0], 0)
