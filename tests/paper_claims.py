@@ -19,7 +19,7 @@ import pandas
 
 import paper_records as made
 from tandem import resampling
-from tandem.paper import claims, comparison_tables, paper_numbers, simulation_tables
+from tandem.paper import claims, paper_numbers
 from tandem.paper.folder import Folder
 from tandem.paper.measures import Declared
 from tandem.paper.methods import names
@@ -148,7 +148,8 @@ class Verdicts(unittest.TestCase):
                                       ("figure-2", contacts(10), DIFFERS), ("figure-2-meteor", contacts(80_000), AGREES), ("figure-2-meteor", contacts(10**6), DIFFERS)):
             scene = fields[claim]["scenes"][0]
             self.assertEqual(self.verdict(fields[claim], scene, "8", {f"sim-{scene}": made.simulation(scene, steps)}), verdict, (claim, verdict))
-        self.assertEqual(self.verdict(fields["refit-constant"], "funnel", "8", {}), UNTESTED)
+        for files in ({}, {"sim-funnel": made.simulation("funnel", growing(50), "host")}):
+            self.assertEqual([self.verdict(fields[claim], "funnel", "8", files) for claim in ("refit-constant", "grows-with-contacts")], [UNTESTED] * 2)
 
     def test_composed_steps_flip(self):
         """Frames of the published path beside the solver of a simulation of the same steps. Fewer steps than the paper's, and steps with other
@@ -164,46 +165,6 @@ class Verdicts(unittest.TestCase):
         found = [claims.line_of(Declared(fields), self.folder(files(*arguments)), "funnel", "8") for arguments in ((1,), (10**7,), (1, 121), (1, made.FULL_STEPS - 1, 2))]
         self.assertEqual([line.verdict for line in found], [AGREES, DIFFERS, UNTESTED, UNTESTED])
         self.assertIn("contacts differ", found[3].reason)
-
-    def test_a_simulation_is_composed_of_its_recording_and_its_frames(self):
-        """Stages and frames are those of the cell, the solver that of the simulation, in the steps that both have."""
-        wanted = {"algorithm": "chunked", "preset": "published", "k": "8", "residency": "published"}
-        def files(contacts=1, real_ns=5 * 10**6):
-            cell = made.record("funnel", wanted, 1)
-            made.set_quantity(cell, "stages:traverse", [made.FULL_STEPS * 7000])
-            made.set_quantity(cell, "frame", [10**6 * made.FULL_STEPS])
-            cell["frames"] = {"first": 20, "last": 49}
-            steps = [made.step(i, contacts_found=contacts, stages={"traverse": 1}, host={"solve": 10**6 + i, "move": 0}) for i in range(60)]
-            return {"steps-funnel": [cell], "sim-funnel": made.simulation("funnel", steps), "check-funnel": [cell],
-                    "serial-funnel": made.simulation("funnel", [made.step(i, host={"step": real_ns}) for i in range(30)])}
-        folder = self.folder(files())
-        [run] = folder.compositions()
-        self.assertEqual([step["step"] for step in run.steps], list(range(20, 50)))
-        self.assertAlmostEqual(run.host("step"), sum(1e-3 + 3e-3 + 1e-9 * i for i in range(20, 50)))
-        self.assertEqual(run.curve("stage:traverse"), [7e-6] * 30)
-        table = simulation_tables.table3(folder)
-        [row] = [row for row in table.rows if "composed" in row.get("data_path", "")]
-        self.assertEqual((row["steps"], row["data_path"]), ("30 of 20:49", "published, conversion serial, composed"))
-        self.assertAlmostEqual(row["total_min"], 500 / 60 * run.host("step") / 30)
-        self.assertIn("In 10 steps of funnel the composition takes 0.800 times as long", table.notes[-1])
-        self.assertNotIn("composition takes", simulation_tables.table3(self.folder({k: v for k, v in files().items() if k != "serial-funnel"})).notes[-1])
-        self.assertEqual(self.folder(files(contacts=2)).compositions(), [], "steps with other contacts")
-
-    def test_frames_measured_whole_check_compositions(self):
-        """A composed frame over the same frame that was measured with a whole array."""
-        wanted = {"algorithm": "gproximity", "preset": "published-k40c", "k": "8"}
-        def cell(scene, frame_ns, write_ns=0, batches=1):
-            one = made.record(scene, wanted, 3)
-            one["frames"] = {"first": 0, "last": 0}
-            made.set_quantity(one, "frame", [frame_ns] * 3)
-            made.set_quantity(one, "stages:write", [write_ns] * 3)
-            one["work"]["body_pairs"] = [batches]
-            return one
-        files = {"gpus-tower": [cell("tower", SCALE, batches=4)], "whole-tower": [cell("tower", 10 * SCALE, batches=4)],
-                 "array-k40c": [cell("plates", 2 * SCALE, write_ns=2 * SCALE)]}
-        self.assertIn("measured whole: tower 0.900.", comparison_tables.table4(self.folder(files)).notes[-1])
-        del files["array-k40c"]
-        self.assertNotIn("measured whole", comparison_tables.table4(self.folder(files)).notes[-1])
 
     def test_digests_count_where_they_compare(self):
         """One algorithm compares nothing, and neither do answers without pairs."""

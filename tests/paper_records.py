@@ -66,8 +66,8 @@ def step(number, **fields):
     return {"kind": "step", "step": number, "host_ns": host | fields.pop("host", {}), "stages": stages, "contacts_found": number + 1, "contacts_kept": number + 1, **fields}
 
 
-def simulation(scene, steps):
-    run = {"kind": "run", "scene": {"name": scene, "bodies": 1}, "algorithm": "chunked", "preset": "paper", "settings": {"k": "8"}, "devices": [{"id": "cuda:0", "name": "GPU"}]}
+def simulation(scene, steps, device="cuda:0"):
+    run = {"kind": "run", "scene": {"name": scene, "bodies": 1}, "algorithm": "chunked", "preset": "paper", "settings": {"k": "8"}, "devices": [{"id": device, "name": "GPU"}]}
     return [*steps, run]
 
 

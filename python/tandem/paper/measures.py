@@ -143,6 +143,14 @@ def chunks(claim, folder, scene, k):
     return exact(value, [f"chunks-{order}.csv" for order in (claim.fields["above"], below) if order])
 
 
+def _on_device(claim, folder, scene):
+    """The simulation of a claim about times of the device."""
+    run = claim.simulation(folder, scene)
+    if run.run["devices"][0]["id"] == "host":
+        raise NotMeasured("simulated on a processor, and its steps were not measured on a device")
+    return run
+
+
 def _curve(run, name):
     """A number for each step: of a field, or the seconds of "stage:A+B"."""
     kind, _, stages = name.partition(":")
@@ -155,7 +163,7 @@ def _of_steps(run, value, low, high):
 
 def correlation(claim, folder, scene, k):
     """Spearman's rank correlation over steps, with the interval of Bonett and Wright (2000, Psychometrika 65, equation 3)."""
-    run = claim.simulation(folder, scene)
+    run = _on_device(claim, folder, scene)
     x, y = (_curve(run, name) for name in claim.fields["quantity"])
     good = (x > 0) & (y > 0)
     if good.sum() < 10 or numpy.quantile(x[good], 0.95) < MIN_RANGE * numpy.quantile(x[good], 0.05):
@@ -168,7 +176,7 @@ def correlation(claim, folder, scene, k):
 
 def deciles(claim, folder, scene, k):
     """Ninth over first decile of a time over steps."""
-    run = claim.simulation(folder, scene)
+    run = _on_device(claim, folder, scene)
     values = _curve(run, claim.fields["quantity"])
     of = lambda rows: numpy.quantile(rows, 0.9, axis=-1) / numpy.quantile(rows, 0.1, axis=-1)
     return _of_steps(run, of(values), *resampling.bootstrap_interval(len(values), lambda drawn: of(values[drawn])))

@@ -1,0 +1,81 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""paper_compositions.py PROGRAM SOURCE: simulations and frames of 'tandem paper' that are composed of two measurements, and the notes of tables that say
+how near they are to what was measured whole."""
+import pathlib
+import sys
+import tempfile
+import unittest
+
+from program import SOURCE
+
+sys.path.insert(0, str(SOURCE / "python"))
+import paper_records as made
+from tandem.paper import comparison_tables, simulation_tables
+from tandem.paper.folder import Folder
+
+SCALE = 10**9
+
+
+class Compositions(unittest.TestCase):
+    def setUp(self):
+        work = tempfile.TemporaryDirectory(prefix="tandem-compositions")
+        self.addCleanup(work.cleanup)
+        self.work, self.count = pathlib.Path(work.name), 0
+
+    def folder(self, files):
+        self.count += 1
+        return Folder(made.write_folder(self.work / str(self.count), files))
+
+    def test_a_simulation_is_composed_of_its_recording_and_its_frames(self):
+        """Stages and frames are those of the cell, the solver that of the simulation, in the steps that both have."""
+        wanted = {"algorithm": "chunked", "preset": "published", "k": "8", "residency": "published"}
+        def files(contacts=1, real_ns=5 * 10**6):
+            cell = made.record("funnel", wanted, 1)
+            made.set_quantity(cell, "stages:traverse", [made.FULL_STEPS * 7000])
+            made.set_quantity(cell, "frame", [10**6 * made.FULL_STEPS])
+            cell["frames"] = {"first": 20, "last": 49}
+            steps = [made.step(i, contacts_found=contacts, stages={"traverse": 1}, host={"solve": 10**6 + i, "move": 0}) for i in range(60)]
+            return {"steps-funnel": [cell], "sim-funnel": made.simulation("funnel", steps), "check-funnel": [cell],
+                    "serial-funnel": made.simulation("funnel", [made.step(i, host={"step": real_ns}) for i in range(30)])}
+        folder = self.folder(files())
+        [run] = folder.compositions()
+        self.assertEqual([step["step"] for step in run.steps], list(range(20, 50)))
+        self.assertAlmostEqual(run.host("step"), sum(1e-3 + 3e-3 + 1e-9 * i for i in range(20, 50)))
+        self.assertEqual(run.curve("stage:traverse"), [7e-6] * 30)
+        table = simulation_tables.table3(folder)
+        [row] = [row for row in table.rows if "composed" in row.get("data_path", "")]
+        self.assertEqual((row["steps"], row["data_path"]), ("30 of 20:49", "published, conversion serial, composed"))
+        self.assertAlmostEqual(row["total_min"], 500 / 60 * run.host("step") / 30)
+        self.assertIn("In 10 steps of funnel the composition takes 0.800 times as long", table.notes[-1])
+        self.assertNotIn("composition takes", simulation_tables.table3(self.folder({k: v for k, v in files().items() if k != "serial-funnel"})).notes[-1])
+        self.assertEqual(self.folder(files(contacts=2)).compositions(), [], "steps with other contacts")
+
+    def test_frames_measured_whole_check_compositions(self):
+        """A composed frame over the same frame that was measured with a whole array."""
+        wanted = {"algorithm": "gproximity", "preset": "published-k40c", "k": "8"}
+        def cell(scene, frame_ns, write_ns=0, batches=1):
+            one = made.record(scene, wanted, 3)
+            one["frames"] = {"first": 0, "last": 0}
+            made.set_quantity(one, "frame", [frame_ns] * 3)
+            made.set_quantity(one, "stages:write", [write_ns] * 3)
+            one["work"]["body_pairs"] = [batches]
+            return one
+        files = {"gpus-tower": [cell("tower", SCALE, batches=4)], "whole-tower": [cell("tower", 10 * SCALE, batches=4)],
+                 "array-k40c": [cell("plates", 2 * SCALE, write_ns=2 * SCALE)]}
+        self.assertIn("measured whole: tower 0.900.", comparison_tables.table4(self.folder(files)).notes[-1])
+        del files["array-k40c"]
+        self.assertNotIn("measured whole", comparison_tables.table4(self.folder(files)).notes[-1])
+
+    def test_a_table_names_deep_overlaps_and_steps_without_convergence(self):
+        steps = [made.step(i, deepest_m=0.1 * i, iterations=150 if i % 2 else 7) for i in range(10)]
+        run = made.simulation("funnel", steps)
+        run[-1]["dynamics"] = {"iterations": "150"}
+        [note] = [text for text in simulation_tables.table3(self.folder({"sim-funnel": run})).notes if "Deepest" in text]
+        self.assertEqual(note, "Deepest overlap, and steps whose solver reached its limit of passes: sim-funnel 0.900 m, 5 of 10.")
+        run[-1]["dynamics"] = {"iterations": "200"}
+        self.assertIn("0 of 10", " ".join(simulation_tables.table3(self.folder({"sim-funnel": run})).notes))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=["paper_compositions"])
