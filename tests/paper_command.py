@@ -21,7 +21,7 @@ sys.path.insert(0, str(SOURCE / "python"))
 from tandem.commands import paper as command
 from tandem.paper import claims, page
 from tandem.paper.folder import Folder
-from tandem.paper.measuring import MeasuredFolder, steps_of
+from tandem.paper.measuring import MeasuredFolder, chosen, steps_of
 
 COMMITTED = SOURCE / "results/h200/paper"
 FILES = ["index.html", "verdicts.md", "claims.csv", *(f"table{i}.csv" for i in range(1, 8)), *(f"figure{i}.{kind}" for i in range(1, 15) for kind in ("svg", "csv"))]
@@ -55,11 +55,23 @@ class Paper(unittest.TestCase):
             self.assertIn("left", listed.splitlines()[-1])
             self.assertLessEqual(max(step.seconds for step in steps_of(size, "host")), 480)
 
+    def test_steps_by_what_they_show(self):
+        """Tables, figures and names bring the steps that make their recordings; numbers do not."""
+        steps = steps_of("small", "host")
+        names = lambda text: [steps[number].name for number in chosen(text, steps)]
+        self.assertEqual(names("figure13"), ["sim-glasses", "thresholds"])
+        self.assertEqual(names("precision,table2"), ["ceilings", "sim-glasses", "precision"])
+        self.assertEqual(names(self.number("thresholds")), ["thresholds"])
+        self.assertEqual(names("1:2,1"), ["ceilings", "sim-funnel"])
+        self.assertEqual(len(names("")), len(steps))
+        for number in (*(f"table{i}" for i in range(1, 8)), *(f"figure{i}" for i in (1, 2, 3, 4, 5, 6, 9, 10, 11, 12, 13))):
+            self.assertTrue(names(number), number)
+
     def test_bad_use_is_one_line(self):
         for words, says in (((), "no folder"), (("-o", self.folder, "--size", "huge"), "--size huge: give small or full"),
                             (("-o", self.folder, "--device", "cuda:99"), "cuda:99"),
                             ((*self.host, "--steps", "0:3"), "--steps 0:3"), ((*self.host, "--steps", "3:1"), "--steps 3:1"), ((*self.host, "--steps", "x"), "--steps x"),
-                            ((*self.host, "--steps", "1:999"), "give N or FIRST:LAST"), (("-o", self.folder, "--draw-only", "--again"), "--again"),
+                            ((*self.host, "--steps", "1:999"), "give N or FIRST:LAST"), ((*self.host, "--steps", "1,figure99"), "figure99 is no step"), (("-o", self.folder, "--draw-only", "--again"), "--again"),
                             (("-o", self.folder / "none", "--draw-only"), "steps.jsonl")):
             error = paper(*words, code=2).stderr
             self.assertEqual(error.count("\n"), 1, error)

@@ -40,7 +40,9 @@ Action add_paper(CLI::App& app) {
                         "paper, for a GPU (default: small)")
         ->option_text("small|full");
     add_external_option(app, "--steps",
-                        "FIRST:LAST or N: only these of the steps that --dry-run lists (default: all)");
+                        "only these of the steps that --dry-run lists, and those that make their "
+                        "recordings: FIRST:LAST, N, a name, tableN or figureN, several with commas "
+                        "(default: all)");
     add_external_flag(app, "--again", "measure again what is already done");
     add_external_flag(app, "--measure-only", "draw nothing; draw later with --draw-only, on any machine");
     add_external_flag(app, "--draw-only",

@@ -93,15 +93,15 @@ def main(arguments, program):
         if options.draw_only:
             return draw(options.output)
         steps = measuring.steps_of(options.size, options.device)
-        first, last = measuring.numbered(options.steps, len(steps))
+        numbers = measuring.chosen(options.steps, steps)
         folder = measuring.MeasuredFolder(options.output, options.size, options.device, program)
         if options.dry_run:
             measuring.list_steps(folder, steps)
             return 0
         if options.again:
-            for step in steps[first - 1:last]:
-                folder.forget(step)
-        worst = measuring.run_steps(folder, steps, first, last)
+            for number in numbers:
+                folder.forget(steps[number])
+        worst = measuring.run_steps(folder, steps, numbers)
     except measuring.BadUse as error:
         return print_error(error, 2)
     except OSError as error:

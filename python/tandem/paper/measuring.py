@@ -62,15 +62,51 @@ def steps_of(size, device):
     return steps
 
 
-def numbered(text, count):
-    """(first, last) from "N" or "FIRST:LAST", numbered from 1; all steps for an empty text."""
+SHOWN = re.compile(r"(Table|Figure)s?((?:(?:,| and| to)? \d+)+)")
+
+
+def shown_in(step):
+    """The tables and figures that a step's description names: {"table3", "figure9", ...}."""
+    found = set()
+    for kind, text in SHOWN.findall(step.says):
+        for first, last in re.findall(r"(\d+)(?: to (\d+))?", text):
+            found |= {f"{kind.lower()}{number}" for number in range(int(first), int(last or first) + 1)}
+    return found
+
+
+def _recordings(step):
+    """(recordings that a step reads, the recording that it writes or "")."""
+    words = list(step.command)
+    written = words[words.index("-o") + 1] if "-o" in words else ""
+    scenes = (step.plan or {}).get("scenes", [])
+    read = words + (scenes if isinstance(scenes, list) else [scenes])
+    return {pathlib.PurePath(word).name for word in read if word.endswith(".frames") and word != written}, written
+
+
+def _with_needed(numbers, steps):
+    """Adds the steps that make the recordings of these."""
+    needed = set.union(*(_recordings(steps[number])[0] for number in numbers))
+    return sorted(set(numbers) | {number for number, step in enumerate(steps) if _recordings(step)[1] in needed})
+
+
+def chosen(text, steps):
+    """Indices of the steps that --steps names, in their order; all for an empty text. Steps chosen by a table, a figure or a name come with those
+    that make their recordings."""
     if not text:
-        return 1, count
-    found = re.fullmatch(r"(\d+)(?::(\d+))?", text)
-    first, last = (int(found[1]), int(found[2] or found[1])) if found else (0, 0)
-    if not 1 <= first <= last <= count:
-        raise BadUse(f"--steps {text}: give N or FIRST:LAST of 1:{count}")
-    return first, last
+        return list(range(len(steps)))
+    found = set()
+    for word in text.split(","):
+        range_of = re.fullmatch(r"(\d+)(?::(\d+))?", word)
+        if range_of:
+            first, last = int(range_of[1]), int(range_of[2] or range_of[1])
+            own = range(first - 1, last) if 1 <= first <= last <= len(steps) else ()
+        else:
+            own = [number for number, step in enumerate(steps) if word == step.name or word in shown_in(step)]
+            own = _with_needed(own, steps) if own else ()
+        if not own:
+            raise BadUse(f"--steps {text}: {word} is no step; give N or FIRST:LAST of 1:{len(steps)}, a name, tableN or figureN")
+        found.update(own)
+    return sorted(found)
 
 
 def duration_text(seconds):
@@ -231,16 +267,16 @@ def list_steps(folder, steps):
     print(f"about {duration_text(left)} left, with the durations of the committed results")
 
 
-def run_steps(folder, steps, first, last):
-    """Runs those steps that are not done. Returns the worst exit code. Later steps run also if one fails."""
+def run_steps(folder, steps, numbers):
+    """Runs those of these steps that are not done; numbers: their indices. Returns the worst exit code. Later steps run also if one fails."""
     print_message = lambda text: print(text, file=sys.stderr, flush=True)
     environment = environment_of(folder.program)
-    left = sum(step.seconds for step in steps[first - 1:last] if not folder.is_done(step))
+    left = sum(steps[i].seconds for i in numbers if not folder.is_done(steps[i]))
     expected = real = 0.0
     worst = 0
     for which in (signal.SIGINT, signal.SIGTERM):
         signal.signal(which, folder.interrupt)
-    for number, step in enumerate(steps[first - 1:last], first):
+    for number, step in [(i + 1, steps[i]) for i in numbers]:
         if folder.interrupted:
             break
         if folder.is_done(step):
