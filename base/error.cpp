@@ -12,6 +12,9 @@ namespace tandem {
 
 namespace {
 
+/// More edits than these make another word, not a mistyped one.
+constexpr std::size_t most_edits = 2;
+
 /// Levenshtein distance, one row at a time.
 std::size_t distance(std::string_view a, std::string_view b) {
     std::vector<std::size_t> row(b.size() + 1);
@@ -33,13 +36,14 @@ std::string nearest(std::string_view name, std::span<const std::string> candidat
     const auto best =
         std::min_element(candidates.begin(), candidates.end(),
                          [&](const auto& a, const auto& b) { return distance(name, a) < distance(name, b); });
-    return best == candidates.end() ? std::string() : *best;
+    return best == candidates.end() || distance(name, *best) > most_edits ? std::string() : *best;
 }
 
 std::string unknown(std::string_view what, std::string_view name, std::span<const std::string> candidates) {
     if (candidates.empty()) return fmt::format("unknown {} '{}'; there is none", what, name);
-    return fmt::format("unknown {} '{}'; the nearest is '{}' (there are: {})", what, name,
-                       nearest(name, candidates), fmt::join(candidates, ", "));
+    const auto near = nearest(name, candidates);
+    const auto hint = near.empty() ? std::string() : fmt::format("; the nearest is '{}'", near);
+    return fmt::format("unknown {} '{}'{} (there are: {})", what, name, hint, fmt::join(candidates, ", "));
 }
 
 } // namespace tandem

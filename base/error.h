@@ -18,11 +18,11 @@ struct OutputError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// The candidate with the smallest edit distance to `name`; empty when there are no candidates.
+/// The candidate with the smallest edit distance to `name`; empty when none is within two edits.
 std::string nearest(std::string_view name, std::span<const std::string> candidates);
 
 /// "unknown WHAT 'NAME'; the nearest is 'X' (there are: A, B, C)": the usual InputError message for a wrong
-/// name.
+/// name. Without a nearest one, the middle is missing.
 std::string unknown(std::string_view what, std::string_view name, std::span<const std::string> candidates);
 
 } // namespace tandem

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <fmt/format.h>
 
 namespace tandem {
@@ -65,6 +66,24 @@ std::vector<SceneParameter> with_values(const SceneKind& kind, std::string_view 
     return parameters;
 }
 
+/// Throws for files of other kinds than scenes, by their suffix.
+void refuse_other_files(std::string_view specification) {
+    const std::filesystem::path path(specification);
+    const auto suffix = path.extension().string();
+    if (suffix == ".jsonl")
+        throw InputError(
+            fmt::format("{} is a file of records, not a scene; 'tandem report' draws it", specification));
+    for (const auto* mesh : {".msh", ".mesh", ".vtk", ".vtu", ".node", ".ele"})
+        if (suffix == mesh)
+            throw InputError(fmt::format("{} is a mesh, not a scene; give it with --mesh {}", specification,
+                                         specification));
+    for (const auto* surface : {".stl", ".obj", ".ply", ".off"})
+        if (suffix == surface)
+            throw InputError(fmt::format("{} is a surface, and tandem needs tetrahedra; make them with Gmsh, "
+                                         "fTetWild or TetGen, and give the mesh with --mesh",
+                                         specification));
+}
+
 } // namespace
 
 std::span<const SceneKind> scene_kinds() {
@@ -75,6 +94,7 @@ std::span<const SceneKind> scene_kinds() {
 }
 
 Scene make_scene(std::string_view specification) {
+    refuse_other_files(specification);
     if (specification.ends_with(".json")) return load_description(std::string(specification));
     if (specification.ends_with(".frames")) return load_recording(std::string(specification));
     const bool hard = specification.starts_with("hard:");

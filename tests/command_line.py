@@ -32,6 +32,13 @@ class CommandLine(Case):
         self.bad("the nearest is 'seed_threshold'", "run", "plates", "--set", "seed_treshold=1")
         self.bad("the nearest is 'opencl:0'", "run", "plates", "--device", "opencl:7")
         self.bad("the nearest is 'fair'", "run", "plates", "--preset", "fairr")
+        self.bad("unknown scene 'galaxies' (there are: ", "run", "galaxies")  # nothing is within two edits
+        self.bad("unknown option --zzzzzz; see 'tandem run --help'", "run", "plates", "--zzzzzz")
+        self.bad("setting 'slabs' belongs to tiled, not to chunked; name another algorithm", "run", "plates", "--algorithm", "chunked", "--set", "slabs=all")
+        self.bad("preset 'fair' belongs to gproximity, not to tiled", "run", "plates", "--algorithm", "tiled", "--preset", "fair")
+        for file, expected in (("a.jsonl", "a file of records, not a scene; 'tandem report' draws it"), ("b.msh", "b.msh is a mesh, not a scene; give it with --mesh b.msh"),
+                               ("c.stl", "c.stl is a surface, and tandem needs tetrahedra; make them with ")):
+            self.bad(expected, "run", file)
         renamed = "preset 'resident' of chunked is now called 'grouped'"
         for names in ("resident", "resident,fair"):  # without a preset of chunked by its own name
             self.bad(renamed, "run", "plates", "--preset", names, "--dry-run")

@@ -70,6 +70,27 @@ std::vector<const Traversal*> named_by(std::span<const Traversal* const> chosen)
     return {algorithms().begin(), algorithms().end()};
 }
 
+/// The names of all algorithms and baselines for which `has` is true.
+template<class Has>
+std::vector<std::string_view> names_of_those(const Has& has) {
+    std::vector<std::string_view> names;
+    for (const auto& list : {algorithms(), baselines()})
+        for (const auto* traversal : list)
+            if (has(*traversal)) names.push_back(traversal->name());
+    return names;
+}
+
+/// Throws where `what`, such as "setting", is not of the chosen algorithms but of others.
+void refuse_that_of_others(std::string_view what, const std::string& name,
+                           const std::vector<std::string_view>& owners,
+                           std::span<const Traversal* const> chosen) {
+    if (owners.empty()) return;
+    std::vector<std::string_view> own;
+    for (const auto* traversal : chosen) own.push_back(traversal->name());
+    throw InputError(fmt::format("{} '{}' belongs to {}, not to {}; name another algorithm, or leave it out",
+                                 what, name, fmt::join(owners, ", "), fmt::join(own, ", ")));
+}
+
 /// Checks the names of settings. It is no mistake when only some of the algorithms have a setting.
 void check_sets(const Request& request, std::span<const Traversal* const> chosen) {
     std::set<std::string> known;
@@ -77,7 +98,14 @@ void check_sets(const Request& request, std::span<const Traversal* const> chosen
         for (const auto* parameter : traversal->parameters()) known.emplace(parameter->name);
     const std::vector<std::string> names(known.begin(), known.end());
     for (const auto& [name, values] : request.sets)
-        if (!known.contains(name)) throw InputError(unknown("setting", name, names));
+        if (!known.contains(name)) {
+            const auto has = [&name](const Traversal& traversal) {
+                return std::ranges::any_of(traversal.parameters(),
+                                           [&](const auto* parameter) { return parameter->name == name; });
+            };
+            refuse_that_of_others("setting", name, names_of_those(has), chosen);
+            throw InputError(unknown("setting", name, names));
+        }
     for (auto set = request.sets.begin(); set != request.sets.end(); ++set)
         if (std::any_of(request.sets.begin(), set, [&](const auto& s) { return s.first == set->first; }))
             throw InputError(
@@ -105,8 +133,13 @@ void check_presets(const Request& request, std::span<const Traversal* const> cho
                 names.emplace_back(candidate.name);
     for (const auto& name : request.presets) {
         for (const auto* traversal : chosen) refuse_former_name(name, request, *traversal);
-        if (std::find(names.begin(), names.end(), name) == names.end())
-            throw InputError(unknown("preset", name, names));
+        if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+        const auto has = [&name](const Traversal& traversal) {
+            return std::ranges::any_of(traversal.presets(),
+                                       [&](const auto& preset) { return preset.name == name; });
+        };
+        refuse_that_of_others("preset", name, names_of_those(has), chosen);
+        throw InputError(unknown("preset", name, names));
     }
 }
 

@@ -87,7 +87,7 @@ class Faults(unittest.TestCase):
         self.assertEqual(reason(driver="none"), "cuda: no driver (looked for libcuda.so.1); install NVIDIA's")
         status, _, errors = tandem(*RUN, "--device", "cuda:0", driver="none")
         self.assertEqual((status, len(errors)), (2, 1))
-        self.assertIn("unknown device 'cuda:0'; the nearest is", errors[0])
+        self.assertIn("unknown device 'cuda:0' (there are: ", errors[0])
         self.assertIn("cuda: no driver", errors[0])
 
     def test_no_device(self):

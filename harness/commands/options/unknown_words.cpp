@@ -19,10 +19,11 @@ std::vector<std::string> option_names(const CLI::App& app) {
     return names;
 }
 
-/// The option that begins with `name`, else the one with the smallest edit distance.
+/// "; did you mean --X?" with the option that begins with `name`, else the nearest; ";" if there is neither.
 std::string nearest_option(const std::string& name, const std::vector<std::string>& names) {
     const auto begun = std::ranges::find_if(names, [&](const auto& n) { return n.starts_with(name); });
-    return name.size() > 1 && begun != names.end() ? *begun : nearest(name, names);
+    const auto near = name.size() > 1 && begun != names.end() ? *begun : nearest(name, names);
+    return near.empty() ? std::string(";") : fmt::format("; did you mean --{}?", near);
 }
 
 /// The commands that the help lists.
@@ -35,7 +36,7 @@ std::string unknown_option(const CLI::App& app, const CLI::App* command, const s
     const auto text = word.substr(0, word.find('='));
     const auto name = text.substr(std::min(text.find_first_not_of('-'), text.size()));
     if (command != nullptr)
-        return fmt::format("unknown option {}; did you mean --{}? see 'tandem {} --help'", text,
+        return fmt::format("unknown option {}{} see 'tandem {} --help'", text,
                            nearest_option(name, option_names(*command)), command->get_name());
     auto names = option_names(app);
     for (const auto* each : commands_of(app)) {
@@ -45,8 +46,7 @@ std::string unknown_option(const CLI::App& app, const CLI::App* command, const s
                                each->get_name(), text);
         names.insert(names.end(), more.begin(), more.end());
     }
-    return fmt::format("unknown option {}; did you mean --{}? see 'tandem --help'", text,
-                       nearest_option(name, names));
+    return fmt::format("unknown option {}{} see 'tandem --help'", text, nearest_option(name, names));
 }
 
 std::string unknown_command(const CLI::App& app, const std::string& word) {
