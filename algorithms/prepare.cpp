@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Makes sessions from resolved settings: checks them against the devices, and chooses the data path.
+#include "algorithms/bodies/check_input.h"
 #include "algorithms/bodies/frame_on_device.h"
 #include "algorithms/bodies/origin.h"
 #include "algorithms/pipeline.h"
@@ -79,6 +80,28 @@ void Session::check_motion(bool has_next) const {
         throw InputError("run() got a frame's successor; set motion=linear, or call run(frame)");
 }
 
+void Session::check_frames(const FrameInput& input) const {
+    check_motion(input.next != nullptr);
+    const auto precision = geometry_of(settings()).precision;
+    if (input.next != nullptr) check_successor(input.frame, *input.next);
+    check_frame(*scene_, input.frame, precision, owned());
+    if (input.next != nullptr) of_successor([&] { check_frame(*scene_, *input.next, precision, owned()); });
+}
+
+FrameResult Session::run(const FrameInput& input) {
+    check_frames(input);
+    return run_among(input, std::nullopt);
+}
+
+FrameResult Session::run(const FrameInput& input, std::span<const BodyPair> body_pairs) {
+    check_frames(input);
+    for (const auto& pair : body_pairs)
+        if (pair.a > pair.b || pair.b >= scene_->bodies.size())
+            throw InputError(fmt::format("run() got the body pair {}, {}; give a <= b below {}", pair.a,
+                                         pair.b, scene_->bodies.size()));
+    return run_among(input, body_pairs);
+}
+
 FrameResult Session::run_among(const FrameInput& input, std::optional<std::span<const BodyPair>> body_pairs) {
     set_threads();
     check_pairs(body_pairs);
@@ -133,6 +156,11 @@ void Traversal::do_fit(Settings&, const DeviceInfo&, const Scene*) const {}
 
 AlgorithmStages Traversal::build(const BuildContext& context) const { return do_build(context); }
 
+Settings Traversal::settings(const SettingTexts& given, std::string_view preset) const {
+    const auto& chosen = preset.empty() ? presets().front() : tandem::preset(*this, preset);
+    return resolve(parameters(), chosen.values, given, name());
+}
+
 Settings Traversal::fitted(const Settings& settings, const DeviceInfo& info, const Scene* scene) const {
     check_arithmetic(settings, info);
     auto fitting = settings;
@@ -186,6 +214,7 @@ std::unique_ptr<Session> Traversal::prepare(std::span<Device* const> devices, co
                                             const Settings& settings) const {
     if (devices.empty()) throw InputError(fmt::format("{} needs a device to run on", name()));
     if (scene.bodies.empty()) throw InputError(fmt::format("scene {} has no bodies", scene.name));
+    check_scene(scene);
     check(devices, settings);
     std::vector<Settings> fitting;
     for (const auto* device : devices) fitting.push_back(fitted(settings, device->info(), &scene));
@@ -202,6 +231,7 @@ std::unique_ptr<Session> Traversal::prepare(std::span<Device* const> devices, co
 std::unique_ptr<Session> Traversal::prepare(Device& device, const Scene& scene, const Settings& settings,
                                             Ranks& ranks) const {
     if (scene.bodies.empty()) throw InputError(fmt::format("scene {} has no bodies", scene.name));
+    check_scene(scene);
     if (is_published(settings))
         throw InputError(
             fmt::format("{} with residency=published cannot share a frame between ranks: the paper's "

@@ -38,33 +38,34 @@ public:
 
     /// Clears state that is carried from frame to frame.
     void reset() { do_reset(); }
-    /// Finds the candidate pairs of `frame` and their contacts, and waits for their numbers. Coordinates must
-    /// pass check_range (bodies/range.h). The session finds the body pairs, according to setting broad.
-    /// Throws InputError with motion=linear, which needs the frame's successor.
-    FrameResult run(const Frame& frame) { return run_among(frame, std::nullopt); }
-    /// The same for these body pairs, at most 2^32 - 1. Throws InputError for a pair of a body with itself
-    /// unless setting self allows such pairs.
+    /// Finds the candidate pairs of `frame` and their contacts, and waits for their numbers. The session
+    /// finds the body pairs, according to setting broad. Throws InputError for a frame that does not pass
+    /// check_frame (bodies/check_input.h), and with motion=linear, which needs the frame's successor.
+    FrameResult run(const Frame& frame) { return run(FrameInput(frame)); }
+    /// The same for these body pairs, at most 2^32 - 1. Throws InputError for a pair with a body that the
+    /// scene lacks, and for a pair of a body with itself unless setting self allows such pairs.
     FrameResult run(const Frame& frame, std::span<const BodyPair> body_pairs) {
-        return run_among(frame, body_pairs);
+        return run(FrameInput(frame), body_pairs);
     }
     /// The same for a list in braces.
     FrameResult run(const Frame& frame, std::initializer_list<BodyPair> body_pairs) {
-        return run_among(frame, std::span(body_pairs.begin(), body_pairs.size()));
+        return run(FrameInput(frame), std::span(body_pairs.begin(), body_pairs.size()));
     }
     /// With motion=linear: the candidate pairs are those that could meet while the bodies move from `frame`
     /// to `next`. Deformable vertices move on straight lines. Rigid bodies translate on straight lines and
     /// rotate by the shorter angle at constant speed. Contacts are those of `frame`. Throws InputError if
     /// `next` has other bodies or vertices, or with motion=none.
-    FrameResult run(const Frame& frame, const Frame& next) {
-        return run_among(FrameInput(frame, &next), std::nullopt);
-    }
+    FrameResult run(const Frame& frame, const Frame& next) { return run(FrameInput(frame, &next)); }
     /// The same for these body pairs, which must contain all that could meet on the way.
     FrameResult run(const Frame& frame, const Frame& next, std::span<const BodyPair> body_pairs) {
-        return run_among(FrameInput(frame, &next), body_pairs);
+        return run(FrameInput(frame, &next), body_pairs);
     }
     /// One of the above, for an input with or without a successor.
-    FrameResult run(const FrameInput& input) { return run_among(input, std::nullopt); }
-    FrameResult run(const FrameInput& input, std::span<const BodyPair> body_pairs) {
+    FrameResult run(const FrameInput& input);
+    FrameResult run(const FrameInput& input, std::span<const BodyPair> body_pairs);
+    /// The same for frames and body pairs that the caller has checked, by check_frame.
+    FrameResult run_unchecked(const FrameInput& input) { return run_among(input, std::nullopt); }
+    FrameResult run_unchecked(const FrameInput& input, std::span<const BodyPair> body_pairs) {
         return run_among(input, body_pairs);
     }
     /// The same for a frame in the memory of the session's only device. The answer has the bits of the same
@@ -103,6 +104,7 @@ private:
     void set_threads() const;
     void check_pairs(std::optional<std::span<const BodyPair>> body_pairs) const;
     void check_motion(bool has_next) const;
+    void check_frames(const FrameInput& input) const;
     FrameResult run_among(const FrameInput& input, std::optional<std::span<const BodyPair>> body_pairs);
     FrameResult run_among(const DeviceFrameInput& input, std::optional<std::span<const BodyPair>> body_pairs);
     FrameResult run_checked(const FrameInput& input, std::optional<std::span<const BodyPair>> body_pairs);
@@ -155,6 +157,10 @@ public:
     virtual std::span<const Preset> presets() const = 0;
     /// The counters of its walks.
     virtual std::span<const Counter> counters() const = 0;
+
+    /// Settings by name, over those of a preset; empty: the first preset. Throws InputError for an unknown
+    /// name or value, which it names.
+    Settings settings(const SettingTexts& given = {}, std::string_view preset = {}) const;
 
     /// Adapts settings to a device, such as to groups of one work-item if it has no larger ones. `scene`: the
     /// scene of the session; if null, settings that depend on it are unchanged. Throws InputError if resolved

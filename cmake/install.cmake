@@ -24,7 +24,7 @@ set(public_headers
   algorithms/traversal.h algorithms/device_frame.h algorithms/bodies/frame_input.h algorithms/cost.h algorithms/answer/frame_result.h
   algorithms/parameters/parameter.h algorithms/parameters/choices.h algorithms/parameters/contact_rules.clh
   algorithms/parameters/table.h
-  algorithms/bounds/geometry.h algorithms/bodies/range.h scenes/scene.h scenes/dynamics.h
+  algorithms/bounds/geometry.h algorithms/bodies/range.h algorithms/bodies/check_input.h scenes/scene.h scenes/dynamics.h
   scenes/contact.h scenes/simulate/simulation.h scenes/mesh.h scenes/builtin.h base/error.h)
 if(TANDEM_HAS_MPI)
   list(APPEND public_headers backends/mpi/mpi_ranks.h)
@@ -33,13 +33,17 @@ foreach(header ${public_headers})
   cmake_path(GET header PARENT_PATH folder)
   install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tandem/${folder})
 endforeach()
+install(FILES cmake/tandem.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tandem)
+install(FILES LICENSE README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(EXPORT tandem-targets NAMESPACE tandem:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/tandem)
 set(embree_dependency)
+set(embree_library)
 if(TANDEM_HAS_MPI)
   set(mpi_dependency "find_dependency(MPI COMPONENTS CXX)\n")
 endif()
 if(embree_FOUND)
   set(embree_dependency "find_dependency(embree 3)\n")
+  set(embree_library " -lembree3")
 endif()
 file(WRITE ${PROJECT_BINARY_DIR}/tandem-config.cmake "include(CMakeFindDependencyMacro)
 list(APPEND CMAKE_MODULE_PATH \${CMAKE_CURRENT_LIST_DIR})
@@ -47,8 +51,25 @@ foreach(package Eigen3 fmt nlohmann_json OpenCL ZLIB Threads TBB GMP)
   find_dependency(\${package})
 endforeach()
 ${embree_dependency}${mpi_dependency}include(\${CMAKE_CURRENT_LIST_DIR}/tandem-targets.cmake)
+if(TARGET tandem::mpi)
+  set(tandem_mpi_FOUND TRUE)
+endif()
+foreach(component \${tandem_FIND_COMPONENTS})
+  if(tandem_FIND_REQUIRED_\${component} AND NOT tandem_\${component}_FOUND)
+    set(tandem_FOUND FALSE)
+    set(tandem_NOT_FOUND_MESSAGE \"this tandem has no component \${component}; mpi is the only one, of builds with MPI\")
+  endif()
+endforeach()
 ")
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/tandem-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/tandem-config.cmake ${PROJECT_BINARY_DIR}/tandem-config-version.cmake
               cmake/FindGMP.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/tandem)
+
+# pkg-config's file names the libraries of a static link. cmake --install --prefix changes the folder, so that it is configured then.
+install(CODE "set(embree_library \"${embree_library}\")
+set(PROJECT_VERSION ${PROJECT_VERSION})
+set(CMAKE_INSTALL_LIBDIR ${CMAKE_INSTALL_LIBDIR})
+set(CMAKE_INSTALL_INCLUDEDIR ${CMAKE_INSTALL_INCLUDEDIR})
+configure_file(${PROJECT_SOURCE_DIR}/cmake/tandem.pc.in ${PROJECT_BINARY_DIR}/tandem.pc @ONLY)
+file(INSTALL ${PROJECT_BINARY_DIR}/tandem.pc DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}/pkgconfig\")")

@@ -34,7 +34,7 @@ void dump(const Cell& cell, const Job& job, DumpFile& pairs, DumpFile& contacts)
     const auto session = prepare_session(cell, job.scene);
     for (std::size_t i = 0; i < job.range.size(); ++i) {
         const auto state = job.range.state(i, session->settings()[parameters::motion]);
-        const auto result = session->run(state.input());
+        const auto result = session->run_unchecked(state.input());
         // Collective: all ranks download; only rank 0 writes.
         if (!job.options.dump_pairs.empty())
             if (const auto found = result.download(); pairs) pairs.pairs(job.range.first() + i, found);

@@ -59,6 +59,10 @@ std::size_t cuda_number(const std::string& device) {
     return number;
 }
 
+/// HostInput has checked frames of the host; the device checks those in its memory.
+FrameResult run_frame(Session& session, const FrameInput& frames) { return session.run_unchecked(frames); }
+FrameResult run_frame(Session& session, const DeviceFrameInput& frames) { return session.run(frames); }
+
 } // namespace
 
 Collider::Collider(std::vector<Mesh> meshes, const ColliderOptions& options) : algorithm_(options.algorithm) {
@@ -111,7 +115,7 @@ template<class Frames>
 std::pair<FrameResult, double> Collider::run_frames(const Frames& frames) {
     if (!session_) choose_for(frames, seconds_of_choosing);
     const auto begin = std::chrono::steady_clock::now();
-    auto result = session_->run(frames);
+    auto result = run_frame(*session_, frames);
     return {std::move(result),
             std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()};
 }
@@ -125,7 +129,7 @@ std::pair<FrameResult, double> Collider::run(const Input& input) {
 template<class Frames>
 std::vector<Trial> Collider::choose_for(const Frames& frames, double seconds) {
     auto chosen = choose(
-        candidates_, scene_, [&](Session& session) { return session.run(frames); }, seconds);
+        candidates_, scene_, [&](Session& session) { return run_frame(session, frames); }, seconds);
     session_ = std::move(chosen.session);
     algorithm_ = chosen.algorithm->name();
     return std::move(chosen.trials);

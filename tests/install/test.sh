@@ -59,6 +59,25 @@ cmake --build "$work/consumer" >"$work/log" || { cat "$work/log" >&2; exit 1; }
   fi
 )
 
+# A program of one header, its output, and its build by pkg-config.
+steps='step 0: 0 candidate pairs, 0 contacts
+step 1: [1-9][0-9]* candidate pairs, [1-9][0-9]* contacts; the deepest is 0.050, of tetrahedra [0-4] and [0-4]
+step 2: [1-9][0-9]* candidate pairs, [1-9][0-9]* contacts; the deepest is 0.150, of tetrahedra [0-4] and [0-4]'
+collide=$("$work/consumer/collide")
+[ "$(wc -l <<<"$collide")" = 3 ] && [ "$(grep -cxf <(echo "$steps") <<<"$collide")" = 3 ] || { echo "collide: $collide" >&2; exit 1; }
+if command -v pkg-config >/dev/null && PKG_CONFIG_PATH=$work/prefix/lib/pkgconfig:$work/prefix/lib/x86_64-linux-gnu/pkgconfig && export PKG_CONFIG_PATH && pkg-config tandem; then
+  # shellcheck disable=SC2046 # words of flags
+  c++ -O1 -o "$work/collide" "$folder/../../scripts/examples/collide.cpp" $(pkg-config --cflags --libs tandem)
+  [ "$("$work/collide")" = "$collide" ]
+fi
+[ -s "$work"/prefix/share/doc/tandem/LICENSE ]
+# A component that this build has not is refused by name.
+mkdir "$work/component" && printf 'cmake_minimum_required(VERSION 3.25)\nproject(c LANGUAGES CXX)\nfind_package(tandem REQUIRED COMPONENTS vulkan)\n' >"$work/component/CMakeLists.txt"
+if cmake -S "$work/component" -B "$work/component/build" -DCMAKE_PREFIX_PATH="$work/prefix;$(found CMAKE_PREFIX_PATH)" "${given[@]}" >"$work/log" 2>&1; then
+  echo "component vulkan was found" >&2; exit 1
+fi
+grep -q 'this tandem has no component vulkan' "$work/log" || { cat "$work/log" >&2; exit 1; }
+
 expected=$("$work/consumer/consumer")
 echo "host: $expected"
 same() { # same NAME PROGRAM: runs it; each of its lines must equal the host's

@@ -99,7 +99,7 @@ std::int64_t Trials::run(std::size_t candidate) {
         const auto frame = range_.state(i, session.settings()[parameters::motion]);
         for (auto* device : candidates_[candidate].devices) device->finish();
         const auto begin = Clock::now();
-        const auto result = session.run(frame.input());
+        const auto result = session.run_unchecked(frame.input());
         sum += since(begin);
         pairs += pairs_of(result, team_);
         contacts += result.contacts;

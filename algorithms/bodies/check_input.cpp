@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/bodies/check_input.h"
+
+#include "algorithms/bodies/range.h"
+#include "base/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <functional>
+
+namespace tandem {
+
+namespace {
+
+void check_mesh(const Mesh& mesh, std::size_t number) {
+    if (mesh.tetrahedra.empty())
+        throw InputError(fmt::format("mesh {} has no tetrahedra; a body needs at least one", number));
+    if (mesh.boundary.size() != mesh.tetrahedra.size())
+        throw InputError(fmt::format("mesh {} has {} boundary flags for {} tetrahedra; call complete_mesh",
+                                     number, mesh.boundary.size(), mesh.tetrahedra.size()));
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+        for (const auto vertex : mesh.tetrahedra[t])
+            if (vertex >= mesh.vertices.size())
+                throw InputError(
+                    fmt::format("mesh {}: tetrahedron {} has vertex {} of {}; call complete_mesh", number, t,
+                                vertex, mesh.vertices.size()));
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+        if (!mesh.vertices[v].allFinite())
+            throw InputError(fmt::format("mesh {}: vertex {} is not finite; call complete_mesh", number, v));
+}
+
+/// The squared length of a product of rounded rotations stays within it by orders of magnitude.
+bool is_rotation(const Eigen::Quaterniond& rotation) {
+    constexpr double tolerance = 2e-3;
+    return std::abs(rotation.squaredNorm() - 1) <= tolerance; // false for NaN
+}
+
+void check_state(const Scene& scene, const Frame& frame, std::size_t body) {
+    const auto& mesh = scene.meshes[scene.bodies[body].mesh];
+    if (!scene.bodies[body].deformable) {
+        if (!is_rotation(frame.poses[body].rotation))
+            throw InputError(
+                fmt::format("body {} has a rotation of length {:g}; give a quaternion of length 1", body,
+                            frame.poses[body].rotation.norm()));
+    } else if (frame.deformed[body].size() != mesh.vertices.size()) {
+        throw InputError(fmt::format("body {} is deformable and has {} vertices in the frame and {} in its "
+                                     "mesh; give one position a vertex",
+                                     body, frame.deformed[body].size(), mesh.vertices.size()));
+    }
+    if (frame.skipped.empty()) return;
+    const auto& skipped = frame.skipped[body];
+    const bool is_ascending = std::ranges::adjacent_find(skipped, std::greater_equal<>()) == skipped.end();
+    if (!is_ascending || (!skipped.empty() && skipped.back() >= mesh.tetrahedra.size()))
+        throw InputError(fmt::format("body {}: skipped tetrahedra must be ascending and below {}", body,
+                                     mesh.tetrahedra.size()));
+}
+
+void check_lists(const Scene& scene, const Frame& frame) {
+    const auto bodies = scene.bodies.size();
+    const auto expect = [bodies](std::size_t count, const char* what) {
+        if (count != bodies)
+            throw InputError(
+                fmt::format("the frame has {} {} for {} bodies; give one a body", count, what, bodies));
+    };
+    expect(frame.poses.size(), "poses");
+    expect(frame.deformed.size(), "lists of vertices (empty ones for rigid bodies)");
+    if (!frame.skipped.empty()) expect(frame.skipped.size(), "lists of skipped tetrahedra");
+}
+
+} // namespace
+
+void check_scene(const Scene& scene) {
+    if (!scene.frame && scene.frame_count > 0)
+        throw InputError(
+            "Scene::frame is not set; frame 0 gives the origin of coordinates; without frames, set "
+            "frame_count to 0");
+    std::vector<bool> is_used(scene.meshes.size());
+    for (std::size_t body = 0; body < scene.bodies.size(); ++body) {
+        const auto mesh = scene.bodies[body].mesh;
+        if (mesh >= scene.meshes.size())
+            throw InputError(fmt::format("body {} has mesh {}, and the scene has {} meshes", body, mesh,
+                                         scene.meshes.size()));
+        is_used[mesh] = true;
+    }
+    for (std::size_t mesh = 0; mesh < scene.meshes.size(); ++mesh)
+        if (is_used[mesh]) check_mesh(scene.meshes[mesh], mesh);
+    if (!std::ranges::is_sorted(scene.never_meet)) throw InputError("Scene::never_meet must be ascending");
+    for (const auto& [a, b] : scene.never_meet)
+        if (a > b || b >= scene.bodies.size())
+            throw InputError(fmt::format("Scene::never_meet has the pair {}, {}; give a <= b below {}", a, b,
+                                         scene.bodies.size()));
+}
+
+void check_frame(const Scene& scene, const Frame& frame, Precision precision,
+                 std::optional<std::span<const std::uint32_t>> owned) {
+    check_lists(scene, frame);
+    if (!owned) {
+        for (std::size_t body = 0; body < scene.bodies.size(); ++body) check_state(scene, frame, body);
+        return check_range(scene, frame, precision);
+    }
+    for (std::uint32_t body = 0; body < scene.bodies.size(); ++body)
+        if (scene.bodies[body].fixed) check_state(scene, frame, body);
+    for (const auto body : *owned) check_state(scene, frame, body);
+    check_range_of(scene, frame, precision, *owned);
+}
+
+} // namespace tandem
