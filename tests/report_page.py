@@ -8,10 +8,9 @@ import sys
 import time
 import unittest
 
-from browser import Browser
-from program import LONG, SOURCE, Case, tandem
+from program import LONG, tandem
+from report_case import RECORDS, ReportCase
 
-RECORDS = SOURCE / "results/h200"
 MANY = 3000 if LONG else 600  # cells of a long table
 MAX_CELLS = 6000  # of a page
 MARKUP = "<img src=x onerror=document.title='run'></script><script>document.title='run'</script>"
@@ -25,39 +24,7 @@ HUES = PIXELS + "new Set(pixels.map(p => new THREE.Color(`rgb(${p & 255},${p >> 
 CAMERA = "tandem.sceneView.camera.position.toArray().map(x => x.toFixed(4)).join()"
 
 
-def short(record):
-    """The record with few samples, as most have."""
-    if isinstance(record, dict):
-        return {name: short(value) for name, value in record.items() if name not in ("kernels", "chosen", "kernel_times")}
-    return [short(value) for value in record[:10]] if isinstance(record, list) else record
-
-
-class Pages(Case):
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        cls.browser = Browser()
-        cls.addClassCleanup(cls.browser.__exit__)
-        cls.lines = (RECORDS / "plan.jsonl").read_text().splitlines()
-        cls.plan = [short(json.loads(line)) for line in cls.lines]
-
-    def setUp(self):
-        self.browser.size(1280, 900)
-        self.browser.dark(False)
-
-    def report(self, *arguments, name="page.html", notes=0):
-        page = self.work / name
-        status, out, errors = tandem("report", *arguments, "-o", page)
-        self.assertEqual((status, len(errors)), (0, notes), (arguments, out, errors))
-        self.assertTrue(out.startswith(f"{page}: "), out)
-        self.assertLess(page.stat().st_size, 8e6)
-        return page
-
-    def write(self, name, records):
-        path = self.work / name
-        path.write_text("".join(json.dumps(record) + "\n" for record in records))
-        return path
-
+class Pages(ReportCase):
     def made_up(self, count):
         """`count` cells: several sizes of the committed scenes with the settings of the committed cells."""
         for i in range(count):
@@ -66,11 +33,6 @@ class Pages(Case):
             record["scene"] = {**record["scene"], "key": f"{record['scene']['key']},copy={copy}", "digest": f"{copy:08x}{record['scene']['digest'][:8]}"}
             record["key"] += f"|copy={copy}"
             yield record
-
-    def opened(self, page):
-        seconds = self.browser.open(page)
-        self.assertEqual(self.browser.problems(), [])
-        return seconds
 
     def column(self, name):
         place = self.browser.run("tandem.cellColumns.map(column => column.name)").index(name)

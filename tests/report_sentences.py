@@ -17,6 +17,7 @@ from tandem.report.groups import groups_of
 from tandem.report.reading import Records
 from tandem.report.sentences import group_sentences, summary_sentences
 from tandem.report.shown_cells import FIELDS, ShownCell
+from tandem.report.sweeps import sweeps_of
 
 ONE_MS = [1.0, 1.01, 0.99, 1.0, 1.02, 0.98, 1.0, 1.01, 0.99, 1.0]
 TWO_MS = [2 * ms for ms in ONE_MS]
@@ -48,7 +49,7 @@ class Sentences(unittest.TestCase):
         self.assertEqual([ranked.cell for ranked in groups[0].ranked], [1, 0])
         self.assertIn("quick is the fastest of 2 with 1.000 ms a frame; the next, slow, takes 2.000 times as long [", sentences)
         summary = summary_sentences(groups, cells)
-        self.assertIn("quick is the fastest in 1 of 1 comparisons, told apart from the best other algorithm in 1, which takes 2.000", summary[0])
+        self.assertEqual("quick is the fastest in the only comparison; the best other algorithm takes 2.000 times as long.", summary[0])
         self.assertEqual(len(summary), 1)
 
     def test_the_slowest_of_three(self):
@@ -66,6 +67,33 @@ class Sentences(unittest.TestCase):
         groups, sentences = groups_and_sentences([cell_of("a", [1.0]), cell_of("b", [2.0])])
         self.assertFalse(groups[0].ranked[1].is_told_apart)
         self.assertIn("takes 2.000 times as long (one round: no interval)", sentences)
+
+    def test_a_title_agrees_with_its_sentence(self):
+        """Title, sentence and the words behind the name of the first come from one verdict."""
+        nearly = [ONE_MS[4], ONE_MS[1] + 0.002, *ONE_MS[2:4], ONE_MS[0], *ONE_MS[5:]]
+        for other, first, behind, word in ((TWO_MS, "a is the fastest; the next takes 2.000 times as long [", ", the fastest", "is the fastest of 2"),
+                                           (nearly, "a and the next are not told apart: 1.000 times as long [", ", which has the lowest median", "is not told apart from it"),
+                                           ([2.0], "a has the lowest median; the next takes 2.000 times as long (one round: no interval)", ", which has the lowest median",
+                                            "(one round: no interval)")):
+            cells = [cell_of("a", ONE_MS[:len(other)]), cell_of("b", other)]
+            group = json.loads(data_of(Records(cells=cells), 1_000_000, "", "").json)["groups"][0]
+            self.assertTrue(group["lead"]["title"].startswith(first), group)
+            self.assertEqual(group["lead"]["which"], behind)
+            self.assertIn(word, group["words"])
+
+    def test_a_lower_paired_ratio_is_no_lead(self):
+        """The second has the greater median, but most of its rounds are faster than those of the first."""
+        rounds = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 3.0, 3.0, 3.0, 3.0]
+        cells = [cell_of("a", rounds, session="s"), cell_of("b", [0.99 * ms + 0.0 for ms in rounds[:5]] + [1.2] + [2.9] * 4, session="s")]
+        groups, sentences = groups_and_sentences(cells)
+        self.assertTrue(groups[0].ranked[1].is_told_apart and groups[0].ranked[1].ratio.high < 1, groups[0].ranked)
+        self.assertIn("has the lowest median", sentences)
+
+    def test_wins_that_are_not_all_told_apart(self):
+        nearly = [ONE_MS[4], ONE_MS[1] + 0.002, *ONE_MS[2:4], ONE_MS[0], *ONE_MS[5:]]
+        cells = [cell_of("a", ONE_MS), cell_of("b", nearly), cell_of("a", ONE_MS, "8"), cell_of("b", TWO_MS, "8")]
+        self.assertEqual(summary_sentences(groups_of(cells), cells)[0], "a has the lowest median in all 2 comparisons; "
+                         "the best other algorithm takes 1.000 to 2.000 times as long, and is told apart from it in 1 of these.")
 
     def test_rounds_of_one_session_are_pairs(self):
         """Rounds that rise and fall together distinguish cells of one session, but not cells of two sessions."""
@@ -110,6 +138,47 @@ class Sentences(unittest.TestCase):
     def test_processors(self):
         cells = [cell_of("a", ONE_MS, on_gpus=False)]
         self.assertEqual(summary_sentences(groups_of(cells), cells), ["Times on processors do not predict times on a GPU."])
+
+
+def swept(setting, values, times, **changes):
+    """Cells with these values of a setting, each with its rounds."""
+    cells = [cell_of("a", rounds, **changes) for rounds in times]
+    for cell, value in zip(cells, values):
+        cell.recorded.settings = {**cell.recorded.settings, setting: value}
+        cell.recorded.key += f"|{setting}={value}"
+    return cells
+
+
+class Sweeps(unittest.TestCase):
+    def test_a_line_and_its_verdict(self):
+        sweep, = sweeps_of(swept("seed_threshold", ["1000", "0", "10"], [TWO_MS, [3 * ms for ms in ONE_MS], ONE_MS]))
+        self.assertEqual((sweep["setting"], sweep["of"], sweep["all"]), ("seed_threshold", "pile:bodies=3, frames 0:0, k = 18, on cuda:0 (GPU)", 1))
+        self.assertEqual(sweep["lines"], [{"name": "a", "points": [[0, 1], [10, 2], [1000, 0]]}])
+        self.assertTrue(sweep["title"].startswith("seed_threshold = 10 is the fastest; the next takes 2.000 times as long ["), sweep)
+        self.assertIn("seed_threshold = 10 is the fastest of 3 cells with 1.000 ms a frame; the next, seed_threshold = 1000, takes", sweep["words"])
+
+    def test_one_round_has_no_fastest(self):
+        sweep, = sweeps_of(swept("seed_threshold", ["0", "1", "2"], [[1.0], [2.0], [3.0]]))
+        self.assertEqual(sweep["title"], "seed_threshold = 0 has the lowest median; the next takes 2.000 times as long (one round: no interval)")
+
+    def test_other_answers_and_other_bounds(self):
+        times = [ONE_MS, TWO_MS, TWO_MS]
+        cells = swept("seed_threshold", ["0", "1", "2"], times)
+        for i, cell in enumerate(cells):
+            cell.recorded.pairs = Answer(3 + i, "1", "2")
+        self.assertEqual(sweeps_of(cells)[0]["title"], "Answers differ: these times are of different work")
+        cells = swept("k", ["6", "8", "18"], times)
+        for i, cell in enumerate(cells):
+            cell.recorded.pairs = Answer(3 + i, "1", "2")
+        self.assertIn("k = 6 is the fastest", sweeps_of(cells)[0]["title"])
+        cells = [*swept("seed_threshold", ["0", "1", "2"], times), *swept("seed_threshold", ["0", "1", "2"], times, k="8")]
+        self.assertEqual([(sweep["of"].split(", ")[2], sweep["all"]) for sweep in sweeps_of(cells)], [("k = 18", 1), ("k = 8", 1)])
+
+    def test_what_is_no_sweep(self):
+        times = [ONE_MS, TWO_MS, TWO_MS]
+        self.assertEqual(sweeps_of(swept("rounding", ["safe", "1", "2"], times)), [])
+        self.assertEqual(sweeps_of(swept("seed_threshold", ["0", "1"], times[:2])), [])
+        self.assertEqual(sweeps_of(swept("seed_threshold", ["0", "1", "2"], times, status="wrong")), [])
 
 
 class Conditions(unittest.TestCase):

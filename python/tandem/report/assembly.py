@@ -10,7 +10,7 @@ from ..files import replace_whole
 from .libraries import CHARTS, SCENES, scripts
 
 FOLDER = pathlib.Path(__file__).parent / "page"
-CHART_SCRIPTS = ("words.js", "tables.js", "charts.js", "figures.js")
+CHART_SCRIPTS = ("words.js", "tables.js", "axes.js", "charts.js", "figures.js", "stages.js", "sweeps.js", "errors.js", "kernels.js")
 SCENE_SCRIPTS = ("scene.js", "scene_controls.js")
 
 

@@ -4,9 +4,11 @@ import dataclasses
 import json
 
 from .groups import groups_of
+from .leads import title, which_text
 from .numbers import rounded
-from .sentences import group_sentences, summary_sentences
+from .sentences import group_sentences, named_cells, summary_sentences
 from .shown_cells import FIELDS
+from .sweeps import sweeps_of
 
 LABEL_AND_GROUP_BYTES = 80  # estimate per cell
 SHARED = [column for column, is_shared in enumerate(FIELDS.values()) if is_shared]
@@ -63,7 +65,9 @@ def _fitting_cells(records, max_bytes, values):
 def _group(group, cells):
     ranked = [[one.cell, rounded(one.ratio.value), rounded(one.ratio.low), rounded(one.ratio.high),
                one.is_told_apart if one.has_interval else None] for one in group.ranked]
-    return {"title": group.title, "cells": group.cells, "ranked": ranked, "differ": group.answers_differ, "words": group_sentences(group, cells)}
+    named = named_cells(group, cells)
+    return {"title": group.title, "cells": group.cells, "ranked": ranked, "differ": group.answers_differ, "words": group_sentences(group, cells),
+            "lead": {"title": title(named, group.answers_differ), "which": "" if group.answers_differ else which_text(named)}}
 
 
 class _Details:
@@ -93,8 +97,8 @@ def _cell_data(records, values, max_bytes):
             cells[number].row.append(label)
     made = {"fields": list(FIELDS), "shared": [name for name, is_shared in FIELDS.items() if is_shared], "values": values.values,
             "words": summary_sentences(groups, cells), "groups": [_group(group, cells) for group in groups],
-            "cells": [cell.row for cell in cells], "older": [number for number, cell in enumerate(cells) if cell.is_older]}
-    used = size_of(dumped(made["cells"])) + size_of(dumped(made["groups"])) + values.bytes
+            "sweeps": sweeps_of(cells, records.verdicts), "cells": [cell.row for cell in cells], "older": [number for number, cell in enumerate(cells) if cell.is_older]}
+    used = sum(size_of(dumped(made[name])) for name in ("cells", "groups", "sweeps")) + values.bytes
     details = _Details(max(max_bytes - used, 0))
     made |= {"curves": details.fitting([cell.curve for cell in cells]), "rounds": details.fitting([cell.rounds for cell in cells])}
     if details.missing:

@@ -38,19 +38,21 @@ def _title(cell, scene):
     return f"{', '.join(parts)}, on {names['devices']} ({names['model']})"
 
 
-def _is_rankable(cell):
+def is_rankable(cell):
+    """Whether a ShownCell has times of correct work."""
     recorded = cell.recorded
     has_pairs = recorded.pairs is None or recorded.pairs.count > 0
     return recorded.status == "ok" and bool(recorded.rounds) and not cell.is_older and has_pairs
 
 
-def _timed(recorded):
+def timed(recorded):
+    """The verdicts.TimedCell of a RecordedCell."""
     return TimedCell(recorded.key, recorded.rounds, recorded.session, recorded.names["devices"], recorded.chosen, recorded.pairs)
 
 
 def _rank(group, cells, recorded):
-    rankable = [number for number in group.cells if _is_rankable(cells[number])]
-    verdict = verdict_of([_timed(cells[number].recorded) for number in rankable], recorded)
+    rankable = [number for number in group.cells if is_rankable(cells[number])]
+    verdict = verdict_of([timed(cells[number].recorded) for number in rankable], recorded)
     group.answers_differ = verdict.answers_differ
     group.ranked = [dataclasses.replace(one, cell=rankable[one.cell]) for one in verdict.cells]
 

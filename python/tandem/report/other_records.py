@@ -5,6 +5,7 @@ import dataclasses
 import os
 
 from ..cell_rows import at
+from .conditions import conditions_text
 from .numbers import count, is_number, number, rounded, text
 
 KERNEL_NUMBERS = ("share", "launches", "bytes", "operations", "bytes_per_s", "operations_per_s", "of_bytes", "of_operations", "over_floor",
@@ -35,14 +36,28 @@ def _kernel(kernel):
     return shown | {name: _number_at(kernel, name) for name in KERNEL_NUMBERS} | {"bound": kernel.get("bound")}
 
 
+def _ceiling_conditions(record):
+    """Where the ceilings of a profile are from, and under which conditions they hold."""
+    ceilings = record["ceilings"]
+    origin, date = text(ceilings["from"]), text(ceilings["date"])
+    if origin != "measured":
+        return f"from {os.path.basename(origin)}, measured {date}; the file's record has their conditions"
+    cached = _number_at(ceilings, "cached_bytes")
+    cache = f"; that of cached bytes with {cached:.4g} bytes" if cached else ""
+    return f"measured before the kernels in the same run, {date}{cache}. Conditions of the run: {conditions_text(record)}"
+
+
 def shown_profile(record, path):
     """A profile for the page. `path`: the file of the record."""
     ceilings = {name: _number_at(record["ceilings"], name) for name in CEILINGS}
-    return {"name": _name(record), "file": os.path.basename(path), "ceilings": ceilings, "kernels": list(map(_kernel, record["kernels"]))}
+    return {"name": _name(record), "file": os.path.basename(path), "ceilings": ceilings, "conditions": _ceiling_conditions(record), "kernels": list(map(_kernel, record["kernels"]))}
 
 
 def shown_ceilings(record):
-    shown = {"device": _device_text(record["device"]), "date": text(record["environment"]["date"])}
+    device, environment = record["device"], record["environment"]
+    commit = f"{environment.get('commit') or 'unknown'}{', with changes' if environment.get('dirty') else ''}"
+    conditions = {"measured on": text(environment["date"]), "driver": text(device["driver"]), "compiler": text(device["compiler"]), "commit": commit}
+    shown = {"device": _device_text(device), "conditions": conditions}
     values = {name: rounded(number(record[name]["median"])) for name in sorted(record) if isinstance(record[name], dict) and "median" in record[name]}
     return shown | ({"values": values} if values else {})
 

@@ -4,6 +4,7 @@ import dataclasses
 import statistics
 
 from ..text_lines import one_line
+from .leads import Named, compared_text, lead_sentence
 from .numbers import digits
 
 MAX_LETTERS = 900  # of sentences on cells that are not ranked
@@ -13,32 +14,20 @@ def _label(group, cell):
     return one_line(group.labels[group.cells.index(cell)], 300)
 
 
-def _milliseconds(cell):
+def milliseconds(cell):
     """Milliseconds per frame: the median of a cell's rounds."""
     return statistics.median(cell.recorded.times()) / cell.frames / 1e6
 
 
-def _compared_with_fastest(ranked):
-    ratio = ranked.ratio
-    if not ranked.has_interval:
-        return f"takes {digits(ratio.value)} times as long (one round: no interval)"
-    interval = f"[{digits(ratio.low)}, {digits(ratio.high)}]"
-    if not ranked.is_told_apart:
-        return f"is not told apart from it ({digits(ratio.value)} times its time {interval})"
-    return f"takes {digits(ratio.value)} times as long {interval}"
+def named_cells(group, cells):
+    """leads.Named of the ranked cells of a group, the fastest first."""
+    return [Named(one, _label(group, one.cell), milliseconds(cells[one.cell])) for one in group.ranked]
 
 
 def _fastest(group, cells):
-    first, *rest = group.ranked
-    name, ms = _label(group, first.cell), digits(_milliseconds(cells[first.cell]))
-    if not rest:
-        return f"{name} takes {ms} ms a frame; there is nothing to compare it with."
-    lead = "is the fastest" if rest[0].is_told_apart else "has the lowest median"
-    sentence = (f"{name} {lead} of {len(group.ranked)} with {ms} ms a frame; the next, {_label(group, rest[0].cell)}, "
-                f"{_compared_with_fastest(rest[0])}.")
-    if len(rest) > 1:
-        sentence += f" The slowest, {_label(group, rest[-1].cell)}, {_compared_with_fastest(rest[-1])}."
-    return sentence
+    named = named_cells(group, cells)
+    slowest = f" The slowest, {named[-1].name}, {compared_text(named[-1].ranked)}." if len(named) > 2 else ""
+    return lead_sentence(named) + slowest
 
 
 def _not_ranked(group, cells):
@@ -97,17 +86,25 @@ def _wins(groups, cells):
     return sorted(sorted(wins.items()), key=lambda item: -item[1].all)
 
 
-def _wins_sentence(wins):
+def _won(name, won, contested):
+    """A sentence on an algorithm that has the lowest median in `won.all` of `contested` comparisons."""
+    where = "the only comparison" if contested == 1 else f"all {contested} comparisons" if won.all == contested else f"{won.all} of {contested} comparisons"
+    than = digits(won.low) if won.all == 1 else f"{digits(won.low)} to {digits(won.high)}"
+    if won.significant == won.all:
+        return f"{name} is the fastest in {where}; the best other algorithm takes {than} times as long."
+    apart = f"told apart from it in {won.significant} of these" if won.significant else "not told apart from it"
+    return f"{name} has the lowest median in {where}; the best other algorithm takes {than} times as long, and is {apart}."
+
+
+def _wins_sentences(wins):
     contested = sum(won.all for _, won in wins)
-    parts = [f"{one_line(name, 100)} is the fastest in {won.all} of {contested} comparisons, told apart from the best other algorithm in "
-             f"{won.significant}, which takes {digits(won.low)}{f' to {digits(won.high)}' if won.all > 1 else ''} times as long" for name, won in wins]
-    return f"{'; '.join(parts)}."
+    return [" ".join(_won(one_line(name, 100), won, contested) for name, won in wins)]
 
 
 def summary_sentences(groups, cells):
     """Sentences on all groups together: the numbers of wins of each algorithm, and cells that are not ranked."""
     wins = _wins(groups, cells)
-    sentences = [_wins_sentence(wins)] if wins else []
+    sentences = _wins_sentences(wins) if wins else []
     failed, wrong = (sum(cell.recorded.status == status for cell in cells) for status in ("failed", "wrong"))
     if failed + wrong > 0:
         sentences.append(f"{failed} failed and {wrong} gave a wrong answer: they are shown as such and never ranked.")

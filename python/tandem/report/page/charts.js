@@ -37,26 +37,47 @@ tandem.whiskers = {
   }
 };
 
-/** A logarithmic axis with ticks at powers of ten, and also at their doubles and quintuples if there are few. More would overlap. */
-tandem.logarithmic = (text, many) => ({type: "logarithmic", title: {display: true, text: text + ", logarithmic"}, ticks: {maxRotation: 45, autoSkip: true,
-  callback: value => (many ? [1] : [1, 2, 5]).includes(+value.toExponential(3).split("e")[0]) ? tandem.number(value) : ""}});
-
-/** An axis with a title; logarithmic if values differ by a factor above ten and none is 0. */
-tandem.axis = (text, values, more) => {
-  const known = values.filter(value => value !== null && value !== undefined);
-  const least = Math.min(...known);
-  const most = Math.max(...known);
-  const log = least > 0 && most / least > 10;
-  if (log) return {...tandem.logarithmic(text, most / least > 1000), ...more};
-  return {type: "linear", beginAtZero: true, title: {display: true, text}, ticks: {maxRotation: 45, callback: value => tandem.number(value)}, ...more};
+/** Draws names beside points where there is space: dataset.names has a text for each point. Names of earlier datasets come first. */
+tandem.pointNames = {
+  id: "pointNames",
+  afterDatasetsDraw(chart) {
+    const draw = chart.ctx;
+    const {left, right, top, bottom} = chart.chartArea;
+    const taken = [];
+    const isFree = box => box[0] >= left && box[2] <= right && box[1] >= top && box[3] <= bottom &&
+      !taken.some(other => box[0] < other[2] && other[0] < box[2] && box[1] < other[3] && other[1] < box[3]);
+    const points = chart.data.datasets.flatMap((dataset, i) => dataset.names && chart.isDatasetVisible(i)
+      ? chart.getDatasetMeta(i).data.map((point, j) => ({x: point.x, y: point.y, name: dataset.names[j]})) : []);
+    chart.namesDrawn = [];
+    if (!points.length) return;
+    draw.save();
+    draw.font = "12px system-ui, sans-serif";
+    draw.fillStyle = tandem.ofStyle("--text");
+    draw.textBaseline = "middle";
+    taken.push(...points.map(({x, y}) => [x - 4, y - 4, x + 4, y + 4]));
+    for (const {x, y, name} of points) {
+      const width = draw.measureText(name).width;
+      const boxes = [[x + 9, y], [x - 9 - width, y], [x - width / 2, y - 16], [x - width / 2, y + 16]].map(([from, middle]) => [from, middle - 7, from + width, middle + 7]);
+      const box = boxes.find(isFree);
+      if (!box) continue;
+      taken.push(box);
+      draw.fillText(name, box[0], (box[1] + box[3]) / 2);
+      chart.namesDrawn.push(name);
+    }
+    draw.restore();
+  }
 };
+
+/** The text of a point under the pointer: dataset.texts has it where positions are not the values. */
+tandem.pointText = {title: items => items.some(item => item.dataset.texts) ? "" : items[0]?.label,
+  label: item => item.dataset.texts?.[item.dataIndex] ?? `${item.dataset.label}: ${item.formattedValue}`};
 
 /** Maximum length of names beside bars. */
 tandem.nameLength = () => innerWidth < 640 ? 22 : 38;
 tandem.shortened = (text, length) => text.length > length ? text.slice(0, length - 1) + "…" : text;
 
 tandem.Figure = class {
-  /** `choices`: list of {value, text}. `describe` returns {title, alt, type, data, options, table, height} for a value. */
+  /** `choices`: list of {value, text}. `describe` returns {title, alt, type, data, options, table} for a value, and optionally height and notes: [{text, bad}]. */
   constructor({id, label, choices, describe}) {
     Object.assign(this, {id, label, choices, describe, value: choices[0].value, chart: null, drawn: false});
   }
@@ -67,9 +88,10 @@ tandem.Figure = class {
     this.canvas = element("canvas", {role: "img"});
     this.plot = element("div", {class: "plot"}, this.canvas);
     this.table = element("div");
+    this.notes = element("div");
     const choice = this.choices.length > 1 ? element("div", {class: "controls"},
       tandem.choice(this.label, this.choices, value => { this.value = value; this.refresh(); })) : null;
-    this.figure = element("figure", {id: this.id, "aria-labelledby": this.id + "-title"}, this.title, choice, this.plot,
+    this.figure = element("figure", {id: this.id, "aria-labelledby": this.id + "-title"}, this.title, choice, this.notes, this.plot,
       element("details", {}, element("summary", {}, "The numbers of this chart"), this.table));
     tandem.show("charts", this.figure);
     this.refresh();
@@ -86,6 +108,7 @@ tandem.Figure = class {
     const what = this.describe(this.value);
     this.title.textContent = what.title;
     this.canvas.setAttribute("aria-label", `${what.title} ${what.alt} The numbers are in the table below.`);
+    this.notes.replaceChildren(...(what.notes ?? []).map(({text, bad}) => tandem.element("p", {class: bad ? "bad" : "quiet"}, text)));
     this.table.replaceChildren(tandem.table(...what.table));
     if (what.height) this.plot.style.height = what.height + "px";
     else this.plot.style.height = "";
@@ -102,12 +125,12 @@ tandem.Figure = class {
     Chart.defaults.font.family = "system-ui, sans-serif";
     data.datasets.forEach((dataset, i) => {
       const colour = tandem.colour(dataset.colour ?? i);
-      Object.assign(dataset, {borderColor: dataset.borderColor ?? colour, backgroundColor: colour, pointRadius: dataset.pointRadius ?? 5,
+      Object.assign(dataset, {borderColor: dataset.borderColor ?? colour, backgroundColor: dataset.backgroundColor ?? colour, pointRadius: dataset.pointRadius ?? 5,
         pointStyle: dataset.pointStyle ?? tandem.markers[i % tandem.markers.length]});
     });
-    this.chart = new Chart(this.canvas, {type, data, plugins: [tandem.whiskers],
+    this.chart = new Chart(this.canvas, {type, data, plugins: [tandem.whiskers, tandem.pointNames],
       options: {animation: false, maintainAspectRatio: false, ...options,
-        plugins: {legend: {display: data.datasets.length > 1, position: "bottom", labels: {usePointStyle: true}}, ...options.plugins}}});
+        plugins: {legend: {display: data.datasets.length > 1, position: "bottom", labels: {usePointStyle: true}}, tooltip: {callbacks: tandem.pointText}}}});
     this.figure.dataset.drawn = "true";
   }
 };

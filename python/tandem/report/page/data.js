@@ -38,7 +38,11 @@ tandem.number = value => {
   if (size >= 1e7 || size < 1e-4) return value.toExponential(2).replace(/\.?0+e/, "e");
   return size >= 1000 ? Math.round(value).toLocaleString("en") : String(+value.toPrecision(4));
 };
-tandem.interval = ([value, low, high]) => `${tandem.number(value)} [${tandem.number(low)}, ${tandem.number(high)}]`;
+tandem.oneRound = "one round: no interval";
+tandem.brackets = (low, high) => `[${tandem.number(low)}, ${tandem.number(high)}]`;
+/** The 95 % interval of a cell's time, and its time with the interval. */
+tandem.intervalText = ({ms, rounds}) => rounds > 1 ? tandem.brackets(ms[1], ms[2]) : tandem.oneRound;
+tandem.timeText = cell => `${tandem.number(cell.ms[0])} ms a frame ${cell.rounds > 1 ? tandem.intervalText(cell) : `(${tandem.oneRound})`}`;
 tandem.count = (count, one, more) => `${count} ${count === 1 ? one : more}`;
 
 /** A selection among options, each {value, text}. */

@@ -11,150 +11,16 @@ tandem.mediansFigure = data => {
   return groups.length && new tandem.Figure({id: "medians", label: "comparison", choices: tandem.groupChoices(groups), describe: number => {
     const group = data.groups[number];
     const cells = group.ranked.slice(0, tandem.maxBars).map(entry => data.cells[entry[0]]);
-    const [second] = group.ranked.slice(1);
-    const name = tandem.shortened(cells[0].label, 60);
     const left = group.ranked.length - cells.length;
-    const lead = `${name} is the fastest, ${tandem.number(second[1])} times as fast as the next`;
-    return {title: group.differ ? "Answers differ: these times are of different work" : second[4] ? lead
-        : second[4] === null ? `${lead} (one round: no interval)` : `${name} and the next are not told apart`,
+    return {title: group.lead.title,
       alt: `${group.title}: milliseconds a frame of ${cells.length} cells.` + (left ? ` ${left} slower ones are in the table of every cell.` : ""),
       type: "line", height: 110 + 26 * cells.length,
       data: {labels: cells.map(cell => tandem.shortened(cell.label, tandem.nameLength())), datasets: [{label: "ms a frame", data: cells.map(cell => cell.ms[0]), showLine: false,
-        intervals: cells.map(cell => cell.rounds > 1 ? cell.ms.slice(1) : null), colour: 1}]},
+        intervals: cells.map(cell => cell.rounds > 1 ? cell.ms.slice(1) : null), colour: 1, texts: cells.map(tandem.timeText)}]},
       options: {indexAxis: "y", scales: {x: tandem.axis("milliseconds a frame, 95 % intervals", cells.flatMap(cell => cell.ms)), y: {offset: true, ticks: {autoSkip: false}}}},
-      table: [group.title, ["cell", "ms a frame", "low", "high", "times the fastest's"],
-        group.ranked.slice(0, 200).map(([index, ratio]) => [data.cells[index].label, ...data.cells[index].ms, ratio])]};
-  }});
-};
-
-/** Cells that differ only in one numeric setting: {setting, of, lines}. */
-tandem.sweeps = data => {
-  const cells = data.cells.filter(cell => cell.status === "ok" && cell.ms && !cell.older);
-  const values = {};
-  for (const cell of cells)
-    for (const [name, value] of Object.entries(cell.settings)) (values[name] ??= new Set()).add(value);
-  const names = Object.keys(values).filter(name => values[name].size > 2 && [...values[name]].every(value => value !== "" && isFinite(value)));
-  return names.flatMap(setting => {
-    const lines = new Map();
-    for (const cell of cells) {
-      if (!(setting in cell.settings)) continue;
-      const {[setting]: value, ...rest} = cell.settings;
-      const scene = cell.scene.split(":")[0];
-      const key = JSON.stringify([cell.algorithm, cell.preset, cell.device, scene, cell.frames, rest]);
-      if (!lines.has(key)) lines.set(key, {cell, of: `${scene}, frames ${cell.frames}, on ${cell.device}`, points: new Map()});
-      lines.get(key).points.set(+value, cell);
-    }
-    const long = [...lines.values()].filter(line => line.points.size > 2);
-    return [...new Set(long.map(line => line.of))].map(of => ({setting, of, lines: long.filter(line => line.of === of)}));
-  });
-};
-
-/** Names of the lines of a chart: algorithm, preset and the settings in which they differ. */
-tandem.lineNames = lines => lines.map(({cell}, i) => {
-  const others = lines.filter((_, j) => j !== i);
-  const differing = Object.entries(cell.settings).filter(([name, value]) =>
-    others.some(other => other.cell.algorithm === cell.algorithm && other.cell.settings[name] !== value && !other.points.has(+value)));
-  return tandem.shortened([cell.algorithm, cell.preset, ...differing.map(([name, value]) => `${name}=${value}`)].join(" "), 60);
-});
-
-tandem.sweepsFigure = data => {
-  const sweeps = tandem.sweeps(data);
-  return sweeps.length && new tandem.Figure({id: "sweeps", label: "setting and scene",
-    choices: sweeps.map(({setting, of, lines}, value) => ({value, text: `${setting}: ${of} (${tandem.count(lines.length, "line", "lines")})`})), describe: number => {
-      const {setting, of, lines} = sweeps[number];
-      const shown = lines.slice(0, 8);
-      const names = tandem.lineNames(shown);
-      const points = line => [...line.points].sort((a, b) => a[0] - b[0]);
-      const best = shown.flatMap((line, i) => points(line).map(([value, cell]) => ({value, ms: cell.ms[0], name: names[i]}))).reduce((a, b) => a.ms <= b.ms ? a : b);
-      const all = shown.flatMap(points);
-      return {title: `${setting} = ${tandem.number(best.value)} is the fastest of its values here, with ${tandem.number(best.ms)} ms a frame (${best.name})`,
-        alt: `${of}: milliseconds a frame over ${setting}, ${shown.length} of ${lines.length} lines.`, type: "line",
-        data: {datasets: shown.map((line, i) => ({label: names[i], data: points(line).map(([x, cell]) => ({x, y: cell.ms[0]})),
-          intervals: points(line).map(([, cell]) => cell.rounds > 1 ? cell.ms.slice(1) : null)}))},
-        options: {scales: {x: tandem.axis(setting, all.map(point => point[0]), {beginAtZero: false}), y: tandem.axis("ms a frame", all.map(([, cell]) => cell.ms[0]))}},
-        table: [of, ["line", setting, "ms a frame", "low", "high"], shown.flatMap((line, i) => points(line).map(([value, cell]) => [names[i], value, ...cell.ms]))]};
-    }});
-};
-
-/** Times by stage of each cell: the device's time, or the host's for stages without device time. */
-tandem.stagesFigure = data => {
-  const groups = data.groups.filter(group => group.ranked.some(entry => Object.keys(data.cells[entry[0]].stages).length));
-  const timed = ([device, host]) => device > 0 ? device : host;
-  return groups.length && new tandem.Figure({id: "stages", label: "comparison", choices: tandem.groupChoices(groups), describe: number => {
-    const group = data.groups[number];
-    const cells = group.ranked.slice(0, 20).map(entry => data.cells[entry[0]]);
-    const names = [...new Set(cells.flatMap(cell => Object.keys(cell.stages)))];
-    const time = (cell, name) => cell.stages[name] ? timed(cell.stages[name]) : 0;
-    const own = names.map(name => [name, time(cells[0], name)]).sort((a, b) => b[1] - a[1]);
-    const all = own.reduce((sum, entry) => sum + entry[1], 0);
-    return {title: own.length && all > 0 ? `${own[0][0]} takes ${Math.round(100 * own[0][1] / all)} % of the stages of the fastest, ${tandem.shortened(cells[0].label, 60)}`
-        : "The fastest has no times by stage",
-      alt: `${group.title}: milliseconds a frame by stage, the device's time where a stage has any, otherwise the host's.`,
-      type: "bar", height: 150 + 26 * cells.length,
-      data: {labels: cells.map(cell => tandem.shortened(cell.label, tandem.nameLength())), datasets: names.map((name, i) => ({label: name, data: cells.map(cell => time(cell, name)),
-        borderColor: tandem.ofStyle("--ground"), borderWidth: 1, pointStyle: "rect", colour: i}))},
-      options: {indexAxis: "y", scales: {x: {stacked: true, title: {display: true, text: "milliseconds a frame, with a clock around every command"}}, y: {stacked: true, ticks: {autoSkip: false}}}},
-      table: [group.title, ["cell", ...names], cells.map(cell => [cell.label, ...names.map(name => time(cell, name))])]};
-  }});
-};
-
-/** Roofline chart: kernels under the ceilings of their device. */
-tandem.rooflineFigure = data => data.profiles.length && new tandem.Figure({id: "roofline", label: "profile",
-  choices: data.profiles.map((profile, value) => ({value, text: profile.name})), describe: number => {
-    const {kernels, ceilings, name} = data.profiles[number];
-    const both = kernels.filter(kernel => kernel.bytes > 0 && kernel.operations > 0);
-    const ofBytes = kernel => kernel.operations / kernel.bytes;
-    const bends = ceilings.operations_per_s / ceilings.bytes_per_s;
-    const ends = [Math.min(bends, ...both.map(ofBytes)) / 3, Math.max(bends, ...both.map(ofBytes)) * 3];
-    const under = x => Math.min(x * ceilings.bytes_per_s, ceilings.operations_per_s);
-    const longest = kernels[0];
-    const reached = kernel => Math.max(kernel.of_bytes ?? 0, kernel.of_operations ?? 0);
-    return {title: longest ? `${longest.entry} takes ${Math.round(100 * longest.share)} % of the kernels' time and reaches ${Math.round(100 * reached(longest))} % of a ceiling`
-        : "The profile has no kernels",
-      alt: `${name}: comparisons a second over comparisons per byte of ${both.length} kernels that declare both, under the ceilings of the device.`,
-      type: "scatter",
-      data: {datasets: [{label: "ceiling", data: [ends[0], bends, ends[1]].map(x => ({x, y: under(x)})), showLine: true, pointRadius: 0, colour: 6},
-        ...both.slice(0, 7).map((kernel, i) => ({label: kernel.entry, data: [{x: ofBytes(kernel), y: kernel.operations_per_s}], colour: i, pointRadius: 7}))]},
-      options: {scales: {x: tandem.logarithmic("comparisons per byte", true),
-        y: tandem.logarithmic("comparisons a second", true)}},
-      table: [name, ["kernel", "stage", "ms a frame", "share", "bytes a second", "of their ceiling", "comparisons a second", "of their ceiling", "times its floor", "bound"],
-        kernels.map(kernel => [kernel.entry, kernel.stage, kernel.ms[0], kernel.share, kernel.bytes_per_s, kernel.of_bytes, kernel.operations_per_s, kernel.of_operations,
-          kernel.over_floor, kernel.bound ?? "not known"])]};
-  }});
-
-tandem.errors = [["depth_relative", "error of depth, relative, median"], ["normal_degrees", "error of normals, degrees, median"],
-  ["hausdorff", "error of the contacts' hull, median"], ["volume_relative", "error of volume, relative, median"], ["false_share", "share of candidate pairs that do not meet"],
-  ["missed_share", "share of meeting pairs that are missed"]];
-
-/** Time over error, with the Pareto-optimal cells marked: no other cell is better in one and at least equal in the other. */
-tandem.errorFigure = data => {
-  const cells = data.cells.filter(cell => cell.error && cell.ms && cell.status === "ok" && !cell.older);
-  const of = cell => `${cell.scene}, on ${cell.device}`;
-  const choices = [...new Set(cells.map(of))].flatMap(where => tandem.errors.filter(([name]) => cells.filter(cell => of(cell) === where && cell.error[name] > 0).length > 1)
-    .map(([name, text]) => ({value: JSON.stringify([where, name]), text: `${text}: ${where}`})));
-  return choices.length && new tandem.Figure({id: "error", label: "error and scene", choices, describe: value => {
-    const [where, name] = JSON.parse(value);
-    const own = cells.filter(cell => of(cell) === where && typeof cell.error[name] === "number");
-    const least = Math.min(...own.map(cell => cell.error[name]).filter(error => error > 0));
-    const at = cell => Math.max(cell.error[name], least / 10);  // cells without error are at the left
-    const label = cell => `${cell.algorithm} k=${cell.settings.k} ${["contact_rule", "decision", "rounding"].map(s => cell.settings[s] ?? "").join(" ")}`;
-    const unbeaten = own.filter(cell => !own.some(other => other !== cell && other.ms[0] <= cell.ms[0] && other.error[name] <= cell.error[name] &&
-      (other.ms[0] < cell.ms[0] || other.error[name] < cell.error[name])));
-    const others = own.filter(cell => !unbeaten.includes(cell));
-    const fastest = unbeaten.reduce((a, b) => a.ms[0] <= b.ms[0] ? a : b);
-    const best = unbeaten.reduce((a, b) => a.error[name] <= b.error[name] ? a : b);
-    const points = list => list.map(cell => ({x: at(cell), y: cell.ms[0]}));
-    const what = tandem.errors.find(entry => entry[0] === name)[1];
-    return {title: fastest === best ? `${label(best)} is the fastest and has the least error`
-        : `${label(best)} has the least error and takes ${tandem.number(best.ms[0] / fastest.ms[0])} times as long as the fastest, ${label(fastest)}`,
-      alt: `${where}: milliseconds a frame over ${what}, of ${own.length} cells; ${unbeaten.length} are beaten by none in both. Errors of 0 are at the left.`,
-      type: "scatter",
-      data: {datasets: [{label: "beaten by none in both", data: points(unbeaten), intervals: unbeaten.map(cell => cell.ms.slice(1)), colour: 4, pointStyle: "rectRot", pointRadius: 7},
-        {label: "others", data: points(others), intervals: others.map(cell => cell.ms.slice(1)), colour: 6}]},
-      options: {scales: {x: tandem.logarithmic(what, true),
-        y: tandem.axis("ms a frame", own.map(cell => cell.ms[0]))}},
-      table: [where, ["cell", "preset", what, "ms a frame", "low", "high", "beaten by none"], [...unbeaten, ...others].slice(0, 300).map(cell =>
-        [label(cell), cell.preset, cell.error[name], ...cell.ms, unbeaten.includes(cell) ? "yes" : "no"])]};
+      table: [group.title, ["cell", "ms a frame", "95 %", "times the first", "95 % of this ratio", "told apart"], group.ranked.slice(0, 200).map(([index, ratio, low, high, apart], i) =>
+        [data.cells[index].label, data.cells[index].ms[0], tandem.intervalText(data.cells[index]), ratio, i === 0 ? "" : apart === null ? tandem.oneRound : tandem.brackets(low, high),
+          i === 0 ? "" : apart === null ? "" : apart ? "yes" : "no"])]};
   }});
 };
 

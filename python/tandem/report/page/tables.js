@@ -6,7 +6,7 @@ tandem.cellColumns = [
   {name: "cell", style: "name", of: cell => cell.label, shown: cell => cell.label || cell.algorithm},
   {name: "ms a frame", number: true, of: cell => cell.ms && cell.ms[0]},
   {name: "95 %", number: true, of: cell => cell.ms && (cell.ms[2] - cell.ms[1]) / 2,
-   shown: cell => cell.ms && cell.rounds > 1 ? "± " + tandem.number(+((cell.ms[2] - cell.ms[1]) / 2).toPrecision(2)) : ""},
+   shown: cell => cell.ms && cell.rounds > 1 ? "± " + tandem.number(+((cell.ms[2] - cell.ms[1]) / 2).toPrecision(2)) : cell.ms ? tandem.oneRound : ""},
   {name: "status", of: cell => cell.status + (cell.older ? ", recorded again" : "")},
   {name: "algorithm", of: cell => cell.algorithm},
   {name: "k", number: true, of: cell => +cell.settings.k || null},
@@ -22,7 +22,7 @@ tandem.cellColumns = [
 tandem.cellDetails = (cell, data) => {
   const {element, number} = tandem;
   const facts = [["preset", cell.preset], ["driver", cell.driver], ["failure", cell.failure],
-    ["time", cell.ms && `${tandem.interval(cell.ms)} ms a frame, ${tandem.count(cell.samples, "sample", "samples")} in ` +
+    ["time", cell.ms && `${tandem.timeText(cell)}, ${tandem.count(cell.samples, "sample", "samples")} in ` +
       tandem.count(cell.rounds, "round", "rounds")],
     ["conditions", cell.conditions], ["sampling", cell.sampling],
     ["rounds", (data.rounds[cell.index] || []).map(number).join(", ") + (data.rounds[cell.index] ? " ms a frame" : "left out")],

@@ -28,7 +28,9 @@ tandem.summary = data => {
 tandem.ceilings = data => {
   if (!data.ceilings.length) return;
   const names = [...new Set(data.ceilings.flatMap(entry => Object.keys(entry.values || {})))];
-  tandem.show("others", tandem.table("Ceilings of each device: medians of its measurements",
+  const conditions = [...new Set(data.ceilings.flatMap(entry => Object.keys(entry.conditions)))];
+  tandem.show("others", tandem.table("Ceilings of each device: medians of its measurements, and their conditions",
     ["measured", ...data.ceilings.map(entry => entry.device)],
-    names.map(name => [name.replace(/_/g, " "), ...data.ceilings.map(entry => entry.values[name] ?? "not known")])));
+    [...names.map(name => [name.replace(/_/g, " "), ...data.ceilings.map(entry => entry.values?.[name] ?? "not known")]),
+      ...conditions.map(name => [name, ...data.ceilings.map(entry => entry.conditions[name])])]));
 };
