@@ -155,5 +155,16 @@ class Browser:
         for kind, (x, y), buttons in (("mousePressed", start, 1), ("mouseMoved", end, 1), ("mouseReleased", end, 0)):
             self.ask("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=buttons, clickCount=1)
 
+    def wheel(self, at, down, control=False):
+        self.ask("Input.dispatchMouseEvent", type="mouseWheel", x=at[0], y=at[1], deltaX=0, deltaY=down, modifiers=2 if control else 0)
+
+    def fingers(self, *paths):
+        """Touches with a finger for each path [start, end], in ten steps."""
+        at = lambda part: [{"x": a[0] + part * (b[0] - a[0]), "y": a[1] + part * (b[1] - a[1]), "id": i} for i, (a, b) in enumerate(paths)]
+        self.ask("Input.dispatchTouchEvent", type="touchStart", touchPoints=at(0))
+        for step in range(1, 11):
+            self.ask("Input.dispatchTouchEvent", type="touchMove", touchPoints=at(step / 10))
+        self.ask("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
+
     def picture(self, path):
         pathlib.Path(path).write_bytes(base64.b64decode(self.ask("Page.captureScreenshot", format="png")["data"]))

@@ -118,6 +118,31 @@ class Pages(ReportCase):
         self.assertEqual(self.browser.run("[...document.querySelectorAll('figure canvas')].every(c => c.getClientRects().length)"), True)
         self.browser.ask("Emulation.setEmulatedMedia", media="")
 
+    def too_wide(self):
+        """Tables that are wider than their boxes, with all numbers of charts shown."""
+        self.browser.run("document.querySelectorAll('details').forEach(one => one.open = true)")
+        self.browser.run("new Promise(done => setTimeout(done, 300))")
+        return self.browser.run("[...document.querySelectorAll('.tall, .scrolls')].filter(box => box.scrollWidth > box.clientWidth)"
+                                ".map(box => [box.closest('figure, section').id, box.scrollWidth, box.clientWidth])")
+
+    def test_tables_fit_1400_pixels_and_are_cards_on_a_phone(self):
+        files = ["plan", "profile", "accuracy", "ceilings"]
+        page = self.report(*(RECORDS / f"{name}.jsonl" for name in files))
+        self.browser.size(1400, 900)
+        self.opened(page)
+        self.assertEqual(self.too_wide(), [])
+        self.assertEqual(self.browser.run(f"getComputedStyle({ROWS}[0].children[1]).display"), "table-cell")
+        self.browser.size(390, 844, mobile=True)
+        self.opened(page)
+        self.assertEqual(self.too_wide(), [])
+        self.assertEqual(self.browser.run("document.documentElement.scrollWidth"), 390)
+        labels = self.browser.run(f"[...{ROWS}[0].children].filter(field => field.getClientRects().length)"
+                                  ".map(field => getComputedStyle(field, '::before').content)")
+        self.assertEqual(labels[:4], ['"cell"', '"ms a frame"', '"95 %"', '"status"'])
+        tops = self.browser.run(f"[...{ROWS}[0].children].filter(field => field.getClientRects().length).map(field => field.getBoundingClientRect().top)")
+        self.assertEqual(tops, sorted(set(tops)))
+        self.assertEqual(self.sort_by("ms a frame"), "ascending")
+
     def test_many_cells(self):
         path = self.write("many.jsonl", self.made_up(MANY))
         page = self.report(path, "--scene", "plates", "--frames", "0:99" if LONG else "0:9")

@@ -52,13 +52,16 @@ tandem.choice = (label, options, change) => {
   return tandem.element("label", {class: "wide"}, label, select);
 };
 
-/** A table of texts and numbers with headings, also used for the numbers of charts. */
-tandem.table = (caption, heads, rows) => tandem.element("div", {class: "scrolls"}, tandem.element("table", {},
+/** A text that may break after commas, equals signs and underscores. */
+tandem.breakable = text => text.split(/(?<=[,=_:])/).flatMap((part, i) => i ? [tandem.element("wbr"), part] : [part]);
+
+/** A table of texts and numbers with headings, also used for the numbers of charts. On a phone, each row is a card with the headings beside its values. */
+tandem.table = (caption, heads, rows) => tandem.element("div", {class: "scrolls", tabindex: "0", role: "region", "aria-label": caption}, tandem.element("table", {class: "cards"},
   tandem.element("caption", {}, caption),
-  tandem.element("thead", {}, tandem.element("tr", {}, ...heads.map(head => tandem.element("th", {scope: "col"}, head)))),
-  tandem.element("tbody", {}, ...rows.map(row => tandem.element("tr", {}, ...row.map(value =>
-    tandem.element("td", {class: typeof value === "number" ? "number" : null},
-      typeof value === "number" ? tandem.number(value) : String(value ?? ""))))))));
+  tandem.element("thead", {}, tandem.element("tr", {}, ...heads.map(head => tandem.element("th", {scope: "col"}, ...tandem.breakable(head))))),
+  tandem.element("tbody", {}, ...rows.map(row => tandem.element("tr", {}, ...row.map((value, i) =>
+    tandem.element("td", {class: typeof value === "number" ? "number" : null, "data-label": heads[i]},
+      ...(typeof value === "number" ? [tandem.number(value)] : tandem.breakable(String(value ?? ""))))))))));
 
 /** Makes objects of cells by the names of their fields. In rows, shared values are numbers that refer to data.values. */
 tandem.unpack = data => {

@@ -11,14 +11,20 @@ tandem.points = ({lower, size, points}) => Float32Array.from(tandem.shorts(point
 tandem.bodyColours = [0xd55e00, 0x0072b2, 0x009e73, 0xe6c229, 0xcc79a7, 0x56b4e9, 0xe69f00, 0x7b5ea7];
 tandem.fixedColour = 0x8a8f98;
 
+tandem.maxFittedPoints = 100000;
+tandem.sphereOf = points => new THREE.Box3().setFromPoints(points).getBoundingSphere(new THREE.Sphere());
+tandem.cornersOf = ({min, max}) => Array.from({length: 8}, (_, i) => new THREE.Vector3(i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z));
+tandem.verticesOf = ({attributes: {position}}) => Array.from({length: position.count}, (_, i) => new THREE.Vector3().fromArray(position.array, 3 * i));
+
 /** Draws frames of a scene. tandem.Player has the controls. */
 tandem.SceneView = class {
-  constructor(data, canvas) {
+  /** `aspect`: width of the canvas over its height. */
+  constructor(data, canvas, aspect) {
     Object.assign(this, {data, frame: 0, colouring: "body"});
     this.renderer = new THREE.WebGLRenderer({canvas, antialias: true, preserveDrawingBuffer: true});
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.scene = new THREE.Scene();
-    this.camera = new THREE.PerspectiveCamera(40, 1, 0.01, 1000);
+    this.camera = new THREE.PerspectiveCamera(40, aspect, 0.01, 1000);
     this.light = new THREE.DirectionalLight(0xffffff, 0.75);
     this.camera.add(this.light);
     this.light.position.set(0.5, 1, 1);
@@ -164,33 +170,55 @@ tandem.SceneView = class {
     this.contactNormals.geometry.setAttribute("position", new THREE.BufferAttribute(lines, 3));
   }
 
-  /** Sets the camera so that all bodies that are not fixed are in view, or all bodies if all are fixed. */
+  /** Sets the camera so that all bodies that are not fixed fill the view, or all bodies if all are fixed. */
   lookAtAll() {
-    const box = this.boxOf(body => !(this.kinds[body] & 1));
-    if (box.isEmpty()) box.copy(this.boxOf(() => true));
-    const sphere = box.getBoundingSphere(new THREE.Sphere());
+    let points = this.pointsOf(body => !(this.kinds[body] & 1));
+    if (!points.length) points = this.pointsOf(() => true);
+    const sphere = tandem.sphereOf(points);
     this.radius = sphere.radius || 1;
-    this.centre = sphere.center;
-    const all = this.boxOf(() => true).getBoundingSphere(new THREE.Sphere()).radius || 1;
+    const all = tandem.sphereOf(this.pointsOf(() => true)).radius || 1;
     this.camera.up.set(0, 1, 0);  // opposite to gravity
     this.camera.near = this.radius / 200;
     this.camera.far = this.radius * 20 + all * 10;
-    this.camera.position.copy(this.centre).add(new THREE.Vector3(0.6, 0.55, 1).normalize().multiplyScalar(this.radius * 2.9));
-    this.camera.lookAt(this.centre);
-    this.camera.updateProjectionMatrix();
+    this.fill(points, sphere.center, new THREE.Vector3(0.6, 0.55, 1).normalize());
     if (this.data.contacts) this.showContacts(this.data.contacts[this.frame]);
   }
 
-  boxOf(isIncluded) {
-    const box = new THREE.Box3(), matrix = new THREE.Matrix4();
-    for (const object of this.rigid)
+  /** Moves the camera, which looks against the direction `back`, so that the points just fit the view. A point at (x, y, z) in the camera's axes
+   * around `centre` is in view if |x - shift| <= tangent * (distance - z), and for y alike: two bounds for each of two unknowns. */
+  fill(points, centre, back) {
+    const right = new THREE.Vector3().crossVectors(this.camera.up, back).normalize();
+    const up = new THREE.Vector3().crossVectors(back, right);
+    const tangent = Math.tan(this.camera.fov * Math.PI / 360);
+    const corners = points.map(point => point.clone().sub(centre));
+    const fit = (axis, slope) => {
+      const most = sign => corners.reduce((found, corner) => Math.max(found, sign * corner.dot(axis) + slope * corner.dot(back)), -Infinity);
+      const [over, under] = [most(1), most(-1)];
+      return {distance: (over + under) / (2 * slope), shift: (over - under) / 2};
+    };
+    const across = fit(right, tangent * this.camera.aspect);
+    const upward = fit(up, tangent);
+    this.centre = centre.clone().addScaledVector(right, across.shift).addScaledVector(up, upward.shift);
+    this.camera.position.copy(this.centre).addScaledVector(back, 1.04 * Math.max(across.distance, upward.distance, this.radius / 100));
+    this.camera.lookAt(this.centre);
+    this.camera.updateProjectionMatrix();
+  }
+
+  /** Points that enclose each body that is included: its vertices, or the corners of its box in a scene with many. */
+  pointsOf(isIncluded) {
+    const points = [], matrix = new THREE.Matrix4();
+    const all = this.objects.reduce((sum, object) => sum + object.userData.bodies.length * object.geometry.attributes.position.count, 0);
+    const enclosing = geometry => all > tandem.maxFittedPoints ? tandem.cornersOf(geometry.boundingBox) : tandem.verticesOf(geometry);
+    for (const object of this.rigid) {
+      const own = enclosing(object.geometry);
       object.userData.bodies.forEach((body, i) => {
         if (!isIncluded(body)) return;
         matrix.fromArray(object.instanceMatrix.array, 16 * i);
-        box.union(object.geometry.boundingBox.clone().applyMatrix4(matrix));
+        for (const point of own) points.push(point.clone().applyMatrix4(matrix));
       });
-    for (const object of this.deformable) if (isIncluded(object.userData.bodies[0])) box.union(object.geometry.boundingBox);
-    return box;
+    }
+    for (const object of this.deformable) if (isIncluded(object.userData.bodies[0])) for (const point of enclosing(object.geometry)) points.push(point);
+    return points;
   }
 
   resize(width, height) {

@@ -31,19 +31,27 @@ tandem.animate = (data, stage, canvas, words) => {
   const {element} = tandem;
   let view;
   try {
-    view = new tandem.SceneView(data, canvas);
+    view = new tandem.SceneView(data, canvas, stage.clientWidth / Math.max(stage.clientHeight, 1));
   } catch (error) {
     stage.replaceWith(element("p", {class: "bad"}, "This browser has no WebGL, which draws the scene: " + error.message));
     return;
   }
   const player = new tandem.Player(view, words);
   tandem.show("view", player.controls(), element("p", {class: "quiet"},
-    "Drag or use arrows to turn, wheel or + and - to zoom, Page Up and Page Down for frames, space to play."));
+    "Drag, or use two fingers or arrows to turn; Ctrl and the wheel, + or - to zoom; Page Up and Page Down for frames; space to play."));
+  tandem.keepScrolling(stage);
   player.listen(canvas);
   view.colour("body");
   new ResizeObserver(() => view.resize(stage.clientWidth, stage.clientHeight)).observe(stage);
   tandem.darkness.addEventListener("change", () => view.draw());
   tandem.sceneView = view;
+};
+
+/** Leaves the wheel, and one finger, to the page, which they scroll. The listeners come before those of the library's controls. */
+tandem.keepScrolling = stage => {
+  const leave = isForPage => event => { if (isForPage(event)) event.stopPropagation(); };
+  stage.addEventListener("wheel", leave(event => !event.ctrlKey), {capture: true, passive: true});
+  for (const name of ["touchstart", "touchmove"]) stage.addEventListener(name, leave(event => event.touches.length < 2), {capture: true, passive: true});
 };
 
 tandem.Player = class {
@@ -52,6 +60,7 @@ tandem.Player = class {
     this.orbit = new THREE.OrbitControls(view.camera, view.renderer.domElement);
     this.orbit.target.copy(view.centre);
     this.orbit.enableKeys = false;
+    this.orbit.touches.TWO = THREE.TOUCH.DOLLY_ROTATE;  // one finger scrolls
     this.orbit.update();
     this.orbit.addEventListener("change", () => view.draw());
   }

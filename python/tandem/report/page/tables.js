@@ -11,7 +11,7 @@ tandem.cellColumns = [
   {name: "algorithm", of: cell => cell.algorithm},
   {name: "k", number: true, of: cell => +cell.settings.k || null},
   {name: "scene", style: "wraps", of: cell => cell.scene},
-  {name: "frames", of: cell => cell.frames},
+  {name: "frames", style: "whole", of: cell => cell.frames},
   {name: "device", style: "wraps", of: cell => cell.device},
   {name: "launches", number: true, of: cell => cell.launches},
   {name: "waits", number: true, of: cell => cell.waits},
@@ -43,8 +43,8 @@ tandem.cellRow = (cell, data) => {
   tandem.cellColumns.forEach((column, i) => {
     const value = column.shown ? column.shown(cell) : column.of(cell);
     const text = column.number && !column.shown ? tandem.number(value) : String(value ?? "");
-    const field = element("td", {class: column.number ? "number" : column.name === "status" ? cell.status : column.style});
-    if (i > 0) field.textContent = text;
+    const field = element("td", {class: text === tandem.oneRound ? "number said" : column.number ? "number" : column.name === "status" ? cell.status : column.style, "data-label": column.name});
+    if (i > 0) field.append(...(column.style === "wraps" ? tandem.breakable(text) : [text]));
     else field.append(element("button", {type: "button", "aria-expanded": "false", onclick: event => {
       const button = event.currentTarget;
       const open = button.getAttribute("aria-expanded") === "true";
@@ -85,7 +85,7 @@ tandem.CellTable = class {
       element("button", {type: "button", onclick: () => this.sort(column)}, column.name)));
     this.heads = heads;
     tandem.show("cells", this.controls(), this.count, element("div", {class: "tall", tabindex: "0", role: "region", "aria-labelledby": "cells-title"},
-      element("table", {id: "cell-table"}, element("caption", {}, "A heading sorts; a cell's name shows its settings, conditions and command."),
+      element("table", {id: "cell-table", class: "cards"}, element("caption", {}, "A heading sorts; a cell's name shows its settings, conditions and command."),
         element("thead", {}, element("tr", {}, ...heads)), this.body)));
     this.update();
   }

@@ -1,0 +1,82 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""report_scene.py PROGRAM SOURCE: the scene on a page of `tandem view` in Chromium fills its box, and leaves scrolling to the page."""
+import sys
+import unittest
+
+from program import tandem
+from report_case import ReportCase
+
+CAMERA = "tandem.sceneView.camera.position.toArray().map(x => x.toFixed(4)).join()"
+# [left, right, bottom, top] of the pixels that differ from the background, as parts of the canvas.
+EXTENT = """(() => {
+  const c = document.getElementById('scene-canvas'), g = c.getContext('webgl2') || c.getContext('webgl');
+  tandem.sceneView.draw();
+  const pixels = new Uint8Array(4 * c.width * c.height);
+  g.readPixels(0, 0, c.width, c.height, g.RGBA, g.UNSIGNED_BYTE, pixels);
+  const words = new Uint32Array(pixels.buffer), box = [1e9, -1, 1e9, -1];
+  words.forEach((word, i) => {
+    if (word === words[0]) return;
+    const x = i % c.width, y = Math.floor(i / c.width);
+    box[0] = Math.min(box[0], x); box[1] = Math.max(box[1], x); box[2] = Math.min(box[2], y); box[3] = Math.max(box[3], y);
+  });
+  return [box[0] / c.width, (box[1] + 1) / c.width, box[2] / c.height, (box[3] + 1) / c.height];
+})()"""
+MIDDLE = "(() => { const r = document.getElementById('scene-canvas').getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; })()"
+
+
+class Scenes(ReportCase):
+    def view(self, scene, width, height):
+        page = self.work / "view.html"
+        status, _, errors = tandem("view", *scene, "-o", page)
+        self.assertEqual((status, errors), (0, []))
+        self.browser.size(width, height, mobile=width < 500)
+        self.opened(page)
+        self.browser.until("Boolean(tandem.sceneView)")
+        self.browser.run("new Promise(done => setTimeout(done, 300))")
+
+    def test_the_scene_fills_its_box(self):
+        for scene in (("plates", "--frames", "20"), ("pile:bodies=60,frames=2", "--frames", "0"), ("pile:bodies=300,frames=1",)):
+            for width, height in ((1400, 900), (390, 844)):
+                self.view(scene, width, height)
+                left, right, bottom, top = self.browser.run(EXTENT)
+                self.assertGreater(max(right - left, top - bottom), 0.8, (scene, width))
+                self.assertTrue(left > 0 and right < 1 and bottom > 0 and top < 1, (scene, width, left, right, bottom, top))
+
+    def scrolls(self):
+        self.browser.run("document.getElementById('scene-canvas').scrollIntoView({block: 'center'})")
+        return self.browser.run("scrollY"), self.browser.run(CAMERA), self.browser.run(MIDDLE)
+
+    def now(self):
+        self.browser.run("new Promise(done => setTimeout(done, 500))")
+        return self.browser.run("scrollY"), self.browser.run(CAMERA)
+
+    def test_the_wheel_scrolls_the_page(self):
+        self.view(("plates", "--frames", "20"), 1400, 500)
+        scrolled, camera, middle = self.scrolls()
+        self.browser.wheel(middle, -100)
+        now, same = self.now()
+        self.assertEqual((now < scrolled, same), (True, camera))
+        scrolled, camera, middle = self.scrolls()
+        self.browser.wheel(middle, -100, control=True)
+        now, zoomed = self.now()
+        self.assertEqual(now, scrolled)
+        self.assertNotEqual(zoomed, camera)
+
+    def test_one_finger_scrolls_and_two_turn(self):
+        self.view(("plates", "--frames", "20"), 390, 500)
+        self.browser.ask("Emulation.setTouchEmulationEnabled", enabled=True, maxTouchPoints=2)
+        self.addCleanup(self.browser.ask, "Emulation.setTouchEmulationEnabled", enabled=False)
+        scrolled, camera, (x, y) = self.scrolls()
+        self.browser.fingers([[x, y], [x, y + 60]])
+        now, same = self.now()
+        self.assertEqual((now < scrolled, same), (True, camera))
+        scrolled, camera, (x, y) = self.scrolls()
+        self.browser.fingers([[x - 40, y], [x + 10, y]], [[x + 20, y], [x + 70, y]])
+        now, turned = self.now()
+        self.assertEqual(now, scrolled)
+        self.assertNotEqual(turned, camera)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
