@@ -219,7 +219,9 @@ class Pages(ReportCase):
         for i, record in enumerate(records):
             record["session"] = "0" * 16
             if i % 3 == 0 and record["status"] == "ok":
-                record["total_ns"]["samples"] = [round(1.1 * ns) for ns in record["total_ns"]["samples"]]
+                total = record["total_ns"]
+                total["samples"] = [round(1.1 * ns) for ns in total["samples"]]
+                total.update({name: 1.1 * total[name] for name in ("median", "low", "high")})
         self.write("new.jsonl", records)
         self.opened(self.report(new, "--against", old))
         compared = json.loads(tandem("compare", old, new, "--format", "json")[1])
@@ -231,7 +233,23 @@ class Pages(ReportCase):
             self.assertEqual(a["label"], b["label"])
             for value, name in zip(a["ratio"], ("ratio", "low", "high")):
                 self.assertAlmostEqual(value, b["times"][name], delta=1e-5 * value)
+        self.check_parts_agree(shown)
         self.bad("two sets of records", "report", old, new, "--against", old)
+
+    def check_parts_agree(self, shown):
+        """The summary, the chart, its table, and each cell give the same result of a comparison, in ms a frame."""
+        text = self.browser.run
+        self.assertEqual(self.text("#summary .lead"), self.text("#differences-title"))
+        self.assertIn("new, against tiled. ", self.text("#made").replace(".jsonl", ""))
+        cells = text("JSON.parse(document.getElementById('data-records').textContent).cells")
+        place = text("JSON.parse(document.getElementById('data-records').textContent).fields").index("ms")
+        for row in shown["cells"]:
+            self.assertAlmostEqual(row["new"], cells[row["cell"]][place][0], delta=0.02 * row["new"])
+        slowest = max(shown["cells"], key=lambda row: row["ratio"][0])
+        text(f"document.querySelector('#cell-table tr[data-cell=\"{slowest['cell']}\"] button').click()")
+        details = self.text(".details")
+        self.assertRegex(details, r"comparison1\.1\d* \[[\d.]+, [\d.]+\] times the time in tiled\.jsonl: ")
+        self.assertIn(f"tiled.jsonl: {slowest['verdict']}conditions", details)
 
     def test_bad_files(self):
         empty, other, text, cut = (self.work / name for name in ("empty.jsonl", "other.jsonl", "text.jsonl", "cut.jsonl.xz"))

@@ -63,7 +63,7 @@ def _write(options, program):
     from ..report.reading import read_records
     records, empty = read_records(options.files), size_of(html_of(page))
     if options.against:
-        page.data["differences"] = differences(options.against, options.files[0])
+        page.data["differences"] = differences(options.against, options.files[0], records.cells)
     scene = _add_scene(page, options, program)
     free_bytes = max(MAX_BYTES - empty - sum(map(size_of, page.data.values())), 0)
     data = data_of(records, free_bytes, *_made_by(program))

@@ -17,20 +17,22 @@ def _optional(value):
     return None if value is None else rounded(value)
 
 
-def _row(cell, name):
-    row = {"label": name, "verdict": VERDICTS[cell.verdict]}
+def _row(cell, name, number):
+    """`number`: that of the new cell on the page, or None. Times are milliseconds a frame, as everywhere on the page."""
+    row = {"label": name, "verdict": VERDICTS[cell.verdict], "cell": number}
     if cell.verdict == "another_answer":
         return row
     ratio = cell.ratio
-    return row | {"old": rounded(cell.before_ns / 1e6), "new": rounded(cell.after_ns / 1e6),
+    return row | {"old": rounded(cell.before_ns / cell.before.frames / 1e6), "new": rounded(cell.after_ns / cell.after.frames / 1e6),
                   "ratio": [rounded(value) for value in (ratio.value, ratio.low, ratio.high)], "p": _optional(cell.p_holm),
                   "would_show": _optional(cell.least_effect)}
 
 
-def differences(old, new):
-    """JSON text of the comparison. Raises RecordError as tandem compare does."""
+def differences(old, new, cells):
+    """JSON text of the comparison. `cells`: ShownCells of the new file. Raises RecordError as tandem compare does."""
+    numbers = {cell.recorded.key: number for number, cell in enumerate(cells) if not cell.is_older}
     before, after, matched = matched_files(old, new, level=LEVEL)
     labels, common = label([cell.before for cell in matched.cells])
     return dumped({"old": os.path.basename(old), "new": os.path.basename(new), "common": common, "summary": summary(matched, LEVEL),
                    "notes": notes(before, after, matched), "of": len(matched.cells),
-                   "cells": list(map(_row, matched.cells[:MAX_SHOWN], labels))})
+                   "cells": [_row(cell, name, numbers.get(cell.after.key)) for cell, name in zip(matched.cells[:MAX_SHOWN], labels)]})

@@ -63,8 +63,9 @@ tandem.table = (caption, heads, rows) => tandem.element("div", {class: "scrolls"
     tandem.element("td", {class: typeof value === "number" ? "number" : null, "data-label": heads[i]},
       ...(typeof value === "number" ? [tandem.number(value)] : tandem.breakable(String(value ?? ""))))))))));
 
-/** Makes objects of cells by the names of their fields. In rows, shared values are numbers that refer to data.values. */
-tandem.unpack = data => {
+/** Makes objects of cells by the names of their fields. In rows, shared values are numbers that refer to data.values. Cells of a comparison get
+ * `against`, its text. */
+tandem.unpack = (data, differences) => {
   const shared = new Set(data.shared);
   const older = new Set(data.older);
   data.cells = data.cells.map((row, index) => {
@@ -74,6 +75,8 @@ tandem.unpack = data => {
     });
     return cell;
   });
+  for (const {cell, ratio, verdict} of differences?.cells ?? [])
+    if (data.cells[cell]) data.cells[cell].against = (ratio ? `${tandem.number(ratio[0])} ${tandem.brackets(ratio[1], ratio[2])} times the time in ${differences.old}: ` : "") + verdict;
   data.groups.forEach((group, number) => {
     group.number = number;
     group.cells = group.cells.map(index => data.cells[index]);

@@ -66,7 +66,7 @@ tandem.differencesFigure = differences => differences && new tandem.Figure({id: 
   const shown = timed.slice(0, 40).sort((a, b) => b.ratio[0] - a.ratio[0]);
   const limits = shown.flatMap(cell => cell.ratio);
   const left = differences.of - shown.length;
-  return {title: `${differences.new} against ${differences.old}: ${differences.summary}`,
+  return {title: tandem.againstText(differences),
     alt: `New time over old time with 95 % intervals; 1 is no change. ${differences.common}. ${differences.notes.join(" ")}` + (left ? ` ${left} cells that changed less are in the table or left out.` : ""),
     type: "line", height: 110 + 26 * shown.length,
     data: {labels: shown.map(cell => tandem.shortened(cell.label, tandem.nameLength())), datasets: [{label: "new / old", data: shown.map(cell => cell.ratio[0]), showLine: false,
@@ -74,8 +74,8 @@ tandem.differencesFigure = differences => differences && new tandem.Figure({id: 
     options: {indexAxis: "y", scales: {x: {title: {display: true, text: "new time over old time, 95 % intervals; above 1 is slower"}, suggestedMin: Math.min(0.95, ...limits), suggestedMax: Math.max(1.05, ...limits),
       grid: {lineWidth: mark => mark.tick && mark.tick.value === 1 ? 3 : 1, color: mark => tandem.ofStyle(mark.tick && mark.tick.value === 1 ? "--text" : "--grid")}},
       y: {offset: true, ticks: {autoSkip: false}}}},
-    table: [[differences.common, ...differences.notes].join("; "), ["cell", "old ms", "new ms", "new/old", "low", "high", "p (Holm)", "verdict"],
-      differences.cells.map(cell => [cell.label, cell.old, cell.new, ...(cell.ratio ?? ["", "", ""]), cell.p, cell.verdict])]};
+    table: [[differences.common, ...differences.notes].join("; "), ["cell", "old ms a frame", "new ms a frame", "new/old", "95 %", "p (Holm)", "verdict"],
+      differences.cells.map(cell => [cell.label, cell.old, cell.new, ...(cell.ratio ? [cell.ratio[0], tandem.brackets(cell.ratio[1], cell.ratio[2])] : ["", ""]), cell.p, cell.verdict])]};
 }});
 
 tandem.charts = (data, differences) => {

@@ -13,11 +13,12 @@
     }
   };
   if (records) {
-    tandem.unpack(records);
-    document.getElementById("made").textContent = "Files: " + records.files.map(file => file.name).join(", ") + ". Made " + records.date + ".";
+    const differences = tandem.read("differences");
+    tandem.unpack(records, differences);
+    document.getElementById("made").textContent = "Files: " + records.files.map(file => file.name).join(", ") + (differences ? ", against " + differences.old : "") + ". Made " + records.date + ".";
     document.getElementById("program").textContent = records.program;
-    attempt("summary", () => tandem.summary(records));
-    attempt("charts", () => tandem.charts(records, tandem.read("differences")));
+    attempt("summary", () => tandem.summary(records, differences));
+    attempt("charts", () => tandem.charts(records, differences));
     if (records.cells.length) attempt("cells", () => new tandem.CellTable(records).show());
     attempt("others", () => tandem.ceilings(records));
   }

@@ -24,7 +24,7 @@ tandem.cellDetails = (cell, data) => {
   const facts = [["preset", cell.preset], ["driver", cell.driver], ["failure", cell.failure],
     ["time", cell.ms && `${tandem.timeText(cell)}, ${tandem.count(cell.samples, "sample", "samples")} in ` +
       tandem.count(cell.rounds, "round", "rounds")],
-    ["conditions", cell.conditions], ["sampling", cell.sampling],
+    ["comparison", cell.against], ["conditions", cell.conditions], ["sampling", cell.sampling],
     ["rounds", (data.rounds[cell.index] || []).map(number).join(", ") + (data.rounds[cell.index] ? " ms a frame" : "left out")],
     ["stages", Object.entries(cell.stages).map(([name, [device, host]]) => `${name} ${number(device)} (host ${number(host)})`).join(", ")],
     ["settings", Object.entries(cell.settings).map(([name, value]) => `${name}=${value}`).join(" ")],

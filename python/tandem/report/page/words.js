@@ -2,9 +2,12 @@
 // The summary: sentences by group, which the program wrote.
 "use strict";
 
-tandem.summary = data => {
+/** The result of a comparison of two files, which the program wrote, too. */
+tandem.againstText = differences => `${differences.new} against ${differences.old}: ${differences.summary}`;
+
+tandem.summary = (data, differences) => {
   const {element} = tandem;
-  const paragraphs = data.words.map(text => element("p", {class: "lead"}, text));
+  const paragraphs = [...(differences ? [tandem.againstText(differences)] : []), ...data.words].map(text => element("p", {class: "lead"}, text));
   const notes = data.notes.map(text => element("p", {class: "bad"}, "Left out: " + text + "."));
   const groupItem = group => element("li", {}, element("strong", {}, group.title + ": "), group.words);
   // Groups with a comparison or an error come first.
