@@ -56,7 +56,7 @@ tandem.choice = (label, options, change) => {
 tandem.breakable = text => text.split(/(?<=[,=_:])/).flatMap((part, i) => i ? [tandem.element("wbr"), part] : [part]);
 
 /** A table of texts and numbers with headings, also used for the numbers of charts. On a phone, each row is a card with the headings beside its values. */
-tandem.table = (caption, heads, rows) => tandem.element("div", {class: "scrolls", tabindex: "0", role: "region", "aria-label": caption}, tandem.element("table", {class: "cards"},
+tandem.table = (caption, heads, rows) => tandem.element("div", {class: "scrolls", tabindex: "0", role: "group", "aria-label": caption}, tandem.element("table", {class: "cards"},
   tandem.element("caption", {}, caption),
   tandem.element("thead", {}, tandem.element("tr", {}, ...heads.map(head => tandem.element("th", {scope: "col"}, ...tandem.breakable(head))))),
   tandem.element("tbody", {}, ...rows.map(row => tandem.element("tr", {}, ...row.map((value, i) =>

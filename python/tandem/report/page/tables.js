@@ -84,7 +84,7 @@ tandem.CellTable = class {
     const heads = tandem.cellColumns.map(column => element("th", {scope: "col", "aria-sort": "none", class: column.number ? "number" : null},
       element("button", {type: "button", onclick: () => this.sort(column)}, column.name)));
     this.heads = heads;
-    tandem.show("cells", this.controls(), this.count, element("div", {class: "tall", tabindex: "0", role: "region", "aria-labelledby": "cells-title"},
+    tandem.show("cells", this.controls(), this.count, element("div", {class: "tall", tabindex: "0", role: "group", "aria-labelledby": "cells-title"},
       element("table", {id: "cell-table", class: "cards"}, element("caption", {}, "A heading sorts; a cell's name shows its settings, conditions and command."),
         element("thead", {}, element("tr", {}, ...heads)), this.body)));
     this.update();
