@@ -120,7 +120,7 @@ class Charts(ReportCase):
         self.assertEqual(self.chart("sweeps", "chart.options.plugins.tooltip.callbacks.label({dataset: chart.data.datasets[0], dataIndex: 0}).includes('seed_threshold = 0: ')"), True)
         self.assertTrue(self.text("#sweeps h3").startswith("seed_threshold = 1000 is the fastest; the next takes 2.000 times as long ["), self.text("#sweeps h3"))
 
-    def test_one_round_is_said_everywhere(self):
+    def test_one_round_has_the_same_words_everywhere(self):
         records = list(self.swept([0, 1, 2]))
         for record in records:
             total = record["total_ns"]

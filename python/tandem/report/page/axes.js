@@ -18,7 +18,7 @@ tandem.powers = (least, most, count) => {
   return Array.from({length: Math.floor((to - from) / step) + 1}, (_, i) => from + i * step);
 };
 
-/** Of marks {value, text} in order, those that are at least `least` apart. */
+/** Those marks {value, text}, given in order, that are at least `least` apart. */
 tandem.apart = (marks, least) => marks.reduce((kept, mark) =>
   kept.length && mark.value - kept[kept.length - 1].value < least ? kept : [...kept, mark], []);
 

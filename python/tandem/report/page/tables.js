@@ -43,7 +43,7 @@ tandem.cellRow = (cell, data) => {
   tandem.cellColumns.forEach((column, i) => {
     const value = column.shown ? column.shown(cell) : column.of(cell);
     const text = column.number && !column.shown ? tandem.number(value) : String(value ?? "");
-    const field = element("td", {class: text === tandem.oneRound ? "number said" : column.number ? "number" : column.name === "status" ? cell.status : column.style, "data-label": column.name});
+    const field = element("td", {class: text === tandem.oneRound ? "number long" : column.number ? "number" : column.name === "status" ? cell.status : column.style, "data-label": column.name});
     if (i > 0) field.append(...(column.style === "wraps" ? tandem.breakable(text) : [text]));
     else field.append(element("button", {type: "button", "aria-expanded": "false", onclick: event => {
       const button = event.currentTarget;
