@@ -151,7 +151,7 @@ class Charts(ReportCase):
         self.opened(self.report(self.write("profile.jsonl", [record])))
         self.assertEqual(self.browser.run("document.querySelectorAll('#roofline .bad').length"), 0)
         self.assertTrue(self.text("#roofline h3").startswith("The kernel that generates contacts takes 32 % of the kernels' time"), self.text("#roofline h3"))
-        self.assertRegex(self.text("#roofline .quiet"), "Ceilings: measured before the kernels in the same run, 2026-11-23T20:36:31Z; .*GPU at 1980 MHz, 40 to 47 °C")
+        self.assertRegex(self.text("#roofline .quiet"), "Ceilings: measured before the kernels in the same run, 2026-11-23T20:36:31Z; that of cached bytes with 16,777,216 bytes. .*GPU at 1980 MHz, 40 to 47 °C")
         self.draw("roofline")
         self.assertIn("walk leaf tiles", self.chart("roofline", "chart.data.datasets.map(one => one.label)"))
         record["kernels"][1]["of_operations"], record["ceilings"]["from"] = 1.25, "some/ceilings.jsonl"

@@ -91,7 +91,7 @@ class Pages(ReportCase):
         self.browser.drag(box, [box[0] + 90, box[1] + 30])
         self.assertNotEqual(run(CAMERA), turned)
         words = run("document.getElementById('scene-words').textContent")
-        self.assertRegex(words, r"^Frame 20: 3 bodies of 5,130 tetrahedra, \d+ contacts\.$")
+        self.assertRegex(words, r"^Frame 20: 3 bodies of 5,130 tetrahedra, \d+,\d{3} contacts\.$")
         run("(() => { const s = document.getElementById('frame-slider'); s.value = 3; s.dispatchEvent(new Event('input')); })()")
         self.assertIn("Frame 23:", run("document.getElementById('scene-words').textContent"))
         self.assertEqual(run("tandem.sceneView.frame"), 3)

@@ -42,8 +42,8 @@ def _ceiling_conditions(record):
     origin, date = text(ceilings["from"]), text(ceilings["date"])
     if origin != "measured":
         return f"from {os.path.basename(origin)}, measured {date}; the file's record has their conditions"
-    cached = _number_at(ceilings, "cached_bytes")
-    cache = f"; that of cached bytes with {cached:.4g} bytes" if cached else ""
+    cached = number(ceilings["cached_bytes"])
+    cache = f"; that of cached bytes with {cached:,.0f} bytes" if cached else ""
     return f"measured before the kernels in the same run, {date}{cache}. Conditions of the run: {conditions_text(record)}"
 
 

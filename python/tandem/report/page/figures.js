@@ -51,7 +51,7 @@ tandem.simulationsFigure = data => {
       const run = runs[number];
       const sums = run.parts.map((part, i) => [part, run.kept.reduce((sum, step) => sum + step[i + 1], 0)]).sort((a, b) => b[1] - a[1]);
       const all = sums.reduce((sum, entry) => sum + entry[1], 0);
-      return {title: `${sums[0][0]} takes ${Math.round(100 * sums[0][1] / all)} % of the steps' time` + (run.status === "ok" ? "" : `; the run is ${run.status} ${run.failure}`),
+      return {title: `The part ${sums[0][0]} takes ${Math.round(100 * sums[0][1] / all)} % of the steps' time` + (run.status === "ok" ? "" : `; the run is ${run.status}${run.failure ? ": " + run.failure : ""}`),
         alt: `${run.name}: milliseconds of a step by part, ${run.kept.length} of ${run.steps} steps.`, type: "line",
         data: {labels: run.kept.map(step => step[0]), datasets: run.parts.map((part, i) => ({label: part, data: run.kept.map(step => step[i + 1]), fill: true,
           pointRadius: 0, borderWidth: 1, pointStyle: "rect"}))},

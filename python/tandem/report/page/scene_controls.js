@@ -5,7 +5,7 @@
 /** A sentence on the current frame. */
 tandem.sceneWords = (data, frame) => {
   const time = data.times ? `, ${tandem.number(data.times[frame])} s` : "";
-  const contacts = data.contacts ? `, ${tandem.count(data.contacts[frame].found, "contact", "contacts")}` : "";
+  const contacts = data.contacts ? `, ${tandem.number(data.contacts[frame].found)} ${data.contacts[frame].found === 1 ? "contact" : "contacts"}` : "";
   const bodies = data.bodies === data.of_bodies ? tandem.count(data.bodies, "body", "bodies") : `${data.bodies} of ${data.of_bodies} bodies`;
   return `Frame ${data.frames[frame]}${time}: ${bodies} of ${tandem.number(data.tetrahedra)} tetrahedra${contacts}.`;
 };
