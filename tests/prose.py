@@ -223,7 +223,7 @@ class Program(Tree):
     def test_known(self):
         self.write(scripts__tool="#!/bin/sh\n[ $1 = --full ]\n")
         for line in ("tandem", "tandem --version: which", "tandem run x -o y --set a=-b,2", "build/tandem check --out=f", "mpirun -n 2 --bind-to x tandem run a", "tandem hidden",
-                     "tandem run a && tandem check b --out c | sort --unique", "tandem run SCENE ... | PLAN   text --of it", "tandem COMMAND --help", "A=b tandem run  # --none",
+                     "tandem run a && tandem check b --out c | sort --unique", "tandem run SCENE ... | PLAN   text --of it", "tandem COMMAND --help", "tandem check a --out b -- c -o d --set e=1", "A=b tandem run  # --none",
                      "tandem run --set 'a --none'", "tandem: error", "tandem.run()", "other --none", "T=/a/tandem other --none", "scripts/tool --none", "tandem run [--json | -o FILE]"[:11]):
             self.assertEqual(self.found_in(f"\n    {line}\n\n`{line}`\n"), [], line)
         self.assertEqual(self.found_in("`--set` and `--full` and `-o`, and --none\n"), [])
@@ -232,7 +232,8 @@ class Program(Tree):
         for line, expected in (("tandem runs", "tandem has no command runs"), ("tandem check --set a", "tandem check has no option --set"), ("tandem --out a", "tandem has no option --out"),
                                ("build/tandem run -x", "tandem run has no option -x"), ("tandem run [--none]", "tandem run has no option --none"),
                                ("mpirun -n 2 tandem runs", "tandem has no command runs"), ("tandem run a && tandem check --set b", "tandem check has no option --set"),
-                               ("tandem run a; tandem runs", "tandem has no command runs"), ("tandem run \\\n    --none", "tandem run has no option --none")):
+                               ("tandem run a; tandem runs", "tandem has no command runs"), ("tandem run \\\n    --none", "tandem run has no option --none"),
+                               ("tandem check a -- --none", "tandem run has no option --none"), ("tandem check --set a -- b", "tandem check has no option --set")):
             self.assertEqual(self.found_in(f"```sh\n{line}\n```\n"), [f"{expected}"], line)
             if "\n" not in line:
                 self.assertEqual(self.found_in(f"a `{line}`\n"), [expected], line)

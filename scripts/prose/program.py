@@ -81,8 +81,12 @@ def _problem(program, line):
         return None
     if command and not program.has(command):
         return f"tandem has no command {command}"
-    unknown = [name for name in OPTION.findall(" ".join(words)) if name not in program.options(command)]
-    return f"{' '.join(filter(None, ('tandem', command)))} has no option {unknown[0]}" if unknown else None
+    own, behind = (words[:words.index("--")], words[words.index("--"):]) if "--" in words else (words, [])
+    for name, part in ((command, own), ("run", behind)):  # words behind -- are those of the run that the command starts
+        unknown = [option for option in OPTION.findall(" ".join(part)) if option not in program.options(name)]
+        if unknown:
+            return f"{' '.join(filter(None, ('tandem', name)))} has no option {unknown[0]}"
+    return None
 
 
 def _code(page):
