@@ -87,6 +87,27 @@ class Compare(Case):
         cell = self.json_of(old, self.write(other), code=1)["cells"][0]
         self.assertEqual((cell["verdict"], cell["times"]), ("another_answer", None))
 
+    def test_times_are_per_frame(self):
+        old, new = self.write(record()), self.write(record())
+        self.assertEqual(record()["frames"], {"first": 20, "last": 121})
+        out = self.compared(old, new)
+        self.assertIn("ms   milliseconds a frame", out)
+        self.assertEqual(next(line for line in out.splitlines() if line.startswith("chunked ")).split()[1], "0.09853")  # 10.05 ms / 102 frames
+        cell = self.json_of(old, new)["cells"][0]
+        self.assertEqual(cell["old"]["frame_ns"], cell["old"]["median_ns"] / 102)
+
+    def test_a_change_in_disturbed_rounds_only(self):
+        disturbed = record(1.5, session="t")
+        disturbed["conditions"] = {"disturbed": [{"round": number, "why": "busy: other processes use 1.0 of 2 cores"} for number in range(9)]}
+        old, new = self.write(record(session="s")), self.write(disturbed)
+        out = self.compared(old, new).replace("\n  ", " ")
+        self.assertIn(" disturbed ", next(line for line in out.splitlines() if line.startswith("chunked ")))
+        self.assertIn("new: 9 of 9 rounds are disturbed (busy: other processes use 1.0 of 2 cores)", out)
+        self.assertIn("1 changed in disturbed rounds only", out)
+        found = self.json_of(old, new, "--strict", code=1)
+        self.assertEqual((found["cells"][0]["verdict"], found["changed"], found["cells"][0]["new"]["disturbed_rounds"]), ("disturbed", False, 9))
+        self.compared(old, old, "--strict")
+
     def test_too_few_samples(self):
         out = self.compared(self.write(record(samples=3)), self.write(record(9, samples=3)))
         self.assertIn("too few samples to tell", out)
@@ -161,7 +182,7 @@ class Compare(Case):
         self.assertEqual(len(rows), 4)
         self.assertEqual({row.count("|") for row in rows}, {8})
         found = self.json_of(old, new, code=1)
-        self.assertEqual(found["verdicts"], {"slower": 1, "faster": 0, "within_threshold": 0, "not_shown": 1, "too_few": 0, "another_answer": 0})
+        self.assertEqual(found["verdicts"], {"slower": 1, "faster": 0, "within_threshold": 0, "not_shown": 1, "too_few": 0, "disturbed": 0, "another_answer": 0})
         self.assertTrue(found["changed"])
         self.assertEqual([c["key"] for c in found["cells"]], [record()["key"], record(k="18")["key"]])
         self.assertIn(found["summary"], " ".join(text.split()))

@@ -27,6 +27,7 @@ Action add_compare(CLI::App& app) {
         ->option_text("C");
     add_external_option(app, "--commit-new", "use only the records of NEW whose commit begins with this text")
         ->option_text("D");
+    add_external_flag(app, "--strict", "exit with 1 also if a cell changes in disturbed rounds only");
     return run_external_action(app);
 }
 

@@ -16,7 +16,7 @@ COLUMNS = ("verdict", "old_ms", "new_ms", "ratio", "low", "high", "p", "p_holm",
 @dataclasses.dataclass(frozen=True)
 class Comparison:
     """cells: one row per cell of both files, indexed by key: verdict (slower, faster, within_threshold, not_shown, too_few,
-    another_answer), old_ms and new_ms per frame, ratio with its 95 % interval low to high, p, p_holm (corrected over all cells that
+    disturbed, another_answer), old_ms and new_ms per frame, ratio with its 95 % interval low to high, p, p_holm (corrected over all cells that
     can be tested), least_effect (the relative change that would be detected with probability 0.8), paired, threshold.
     only_old, only_new: keys without a counterpart. left_out: "FILE:LINE" of records that failed, are wrong or have no samples."""
     cells: "pandas.DataFrame"
@@ -30,14 +30,18 @@ class Comparison:
         return bool(self.cells["verdict"].isin(["slower", "faster", "another_answer"]).any())
 
 
-def matched_files(old, new, threshold=None, level=0.05, commits=("", "")):
-    """The RecordedCells of both files and their Matched. Raises RecordError, also if no cell is in both."""
+def matched_cells(before, after, threshold=None, level=0.05):
+    """Two RecordedCells and their Matched. Raises RecordError if no cell is in both."""
     from .matching import match  # needs numpy, which reading cells does not need
-    before, after = read_cells(old, commits[0]), read_cells(new, commits[1])
     matched = match(before, after, threshold, level)
     if not matched.cells:
         raise lines.RecordError(nothing_common(before, after))
     return before, after, matched
+
+
+def matched_files(old, new, threshold=None, level=0.05, commits=("", "")):
+    """The RecordedCells of both files and their Matched. Raises RecordError, also if no cell is in both."""
+    return matched_cells(read_cells(old, commits[0]), read_cells(new, commits[1]), threshold, level)
 
 
 def _row(cell):

@@ -5,6 +5,7 @@ import os
 import statistics
 
 from .. import lines
+from .pooling import counting, pooled
 
 RECORD_AGAIN = "record the cell again"
 NAMES_OF = {str: "string", int: "number", bool: "truth value"}
@@ -22,7 +23,11 @@ class Answer:
 class RecordedCell:
     """A record of one cell. `frames`: number of frames in a sample. `names`: texts that name the cell, the most significant first.
     `settings`: includes the parameters of its scene. `rounds`: the median of each round in nanoseconds, by ascending number; with schema 2
-    each sample is a round. `pairs` and `contacts` are None if the record has no digest. Unknown texts are empty."""
+    each sample is a round. `pairs` and `contacts` are None if the record has no digest. `sources`: the digest of the program's sources.
+    `disturbed`: those of the rounds in which the record calls the machine disturbed; `reason`: the first reason. Unknown texts are empty.
+
+    A cell of several records (pooling.py) has `sessions` > 0: then `rounds` and `disturbed` have sessions instead of rounds. `all_rounds` and
+    `disturbed_rounds` count rounds in both cases."""
     line: int
     schema: int
     key: str
@@ -42,6 +47,12 @@ class RecordedCell:
     processor: str
     dirty: bool
     chosen: bool = False  # by --algorithm auto
+    sources: str = ""
+    disturbed: frozenset = frozenset()
+    reason: str = ""
+    sessions: int = 0
+    all_rounds: int = 0
+    disturbed_rounds: int = 0
 
     def times(self):
         return list(self.rounds.values())
@@ -49,9 +60,10 @@ class RecordedCell:
 
 @dataclasses.dataclass
 class RecordedCells:
-    """The records of one file, or of one commit in it. `commit`: the full commit, if one was given. `cells`: the last record of each key
-    that is ok, in the order of the keys' first lines. `left_out`: records that failed, are wrong or have no samples. `repeated`: number of
-    keys with several records that are ok. `torn`: the last line has no end and is ignored."""
+    """The records of one file, or of one commit in it. `commit`: the full commit, if one was given. `cells`: one for each key with records
+    that are ok, in the order of the keys' first lines. `left_out`: records that failed, are wrong or have no samples. `repeated`: number of
+    keys of which some records that are ok do not count. `torn`: the last line has no end and is ignored. `pooled`: number of keys of which
+    several sessions count."""
     path: str
     commit: str
     cells: list
@@ -60,6 +72,7 @@ class RecordedCells:
     records: int
     repeated: int
     torn: bool
+    pooled: int = 0
 
 
 class _NotARecord(Exception):
@@ -143,9 +156,17 @@ def _rounds(record):
     return len(samples), {number: statistics.median(rounds[number]) for number in sorted(rounds)}
 
 
+def _disturbed(record, rounds):
+    """The disturbed ones of these rounds, and the first reason."""
+    found = (record.get("conditions") or {}).get("disturbed") or []
+    reasons = {_needed(one, "round", int): _needed(one, "why") for one in found}
+    return frozenset(reasons.keys() & rounds.keys()), next(iter(reasons.values()), "")
+
+
 def _cell(record, line):
     names, settings = _names(record)
     samples, rounds = _rounds(record)
+    disturbed, reason = _disturbed(record, rounds)
     devices, frames, environment = record["devices"], record["frames"], record["environment"]
     seed = (record.get("sampling") or {}).get("seed")
     return RecordedCell(
@@ -154,7 +175,8 @@ def _cell(record, line):
         on_gpus=bool(devices) and all(device["kind"] == "gpu" for device in devices), session=_text(record, "session"),
         seed=seed if isinstance(seed, int) else None, samples=samples, rounds=rounds, pairs=_answer(record, "digest"),
         contacts=_answer(record, "contact_digest"), commit=_text(environment, "commit"), processor=_text(environment, "processor"),
-        dirty=_needed(environment, "dirty", bool), chosen=record.get("chosen") is not None)
+        dirty=_needed(environment, "dirty", bool), chosen=record.get("chosen") is not None, sources=_text(environment, "sources"),
+        disturbed=disturbed, reason=reason, all_rounds=len(rounds), disturbed_rounds=len(disturbed))
 
 
 def recorded_cell(record, path, line):
@@ -208,13 +230,14 @@ def read_cells(file, commit=""):
     if start:
         start = _whole_commit(path, start, records)
         records = [cell for cell in records if cell.commit == start]
-    cells, repeated, left_out = {}, set(), []
+    by_key, left_out = {}, []
     for cell in records:
         if cell.status != "ok" or not cell.rounds:
             left_out.append(cell)
-            continue
-        if cell.key in cells:
-            repeated.add(cell.key)
-        cells[cell.key] = cell
-    kept = list(cells.values())
-    return RecordedCells(path, start, kept, left_out, _commits(kept), len(records), len(repeated), bool(torn))
+        else:
+            by_key.setdefault(cell.key, []).append(cell)
+    counted = {key: counting(found) for key, found in by_key.items()}
+    kept = [pooled(found) if len(found) > 1 else found[0] for found in counted.values()]
+    repeated = sum(len(counted[key]) < len(found) for key, found in by_key.items())
+    return RecordedCells(path, start, kept, left_out, _commits(kept), len(records), repeated, bool(torn),
+                         sum(len(found) > 1 for found in counted.values()))

@@ -32,7 +32,7 @@ def _file_notes(side):
         yield f"{side.path}: the last line has no end and is ignored; it is cut off or still being written"
     if side.repeated:
         yield (f"{side.path}: {side.repeated} {'cell was' if side.repeated == 1 else 'cells were'} recorded more than once; "
-               "the last record that is ok counts")
+               "the last record that is ok counts, with those of other sessions of its program")
 
 
 def _reason(cell):
@@ -70,10 +70,35 @@ def _machine_notes(matched):
 
 def _separate_run_notes(matched):
     """Only within a session are both sides measured under the same load of the machine."""
-    separate = sum(not cell.paired for cell in matched.cells)
+    separate = sum(not cell.paired and not cell.before.sessions for cell in matched.cells)
     if separate:
         yield (f"{separate} of {len(matched.cells)} cells were measured in separate runs: load, clocks and preparation of each run count "
                "as changes")
+
+
+def _range(numbers):
+    """"10", or "8 to 10"."""
+    low, high = min(numbers), max(numbers)
+    return f"{low}" if low == high else f"{low} to {high}"
+
+
+def _session_notes(matched):
+    """A cell of several sessions is compared by them."""
+    pooled = [cell for cell in matched.cells if cell.before.sessions]
+    if pooled:
+        counts = " and ".join(f"{_range([getattr(cell, side).sessions for cell in pooled])} of {name}"
+                              for side, name in (("before", "old"), ("after", "new")))
+        yield f"{len(pooled)} {'cell is' if len(pooled) == 1 else 'cells are'} compared by sessions: {counts}"
+
+
+def _disturbed_notes(matched):
+    """How many rounds other work disturbed, and what follows."""
+    for name, side in (("old", "before"), ("new", "after")):
+        cells = [getattr(cell, side) for cell in matched.cells]
+        count, rounds = sum(cell.disturbed_rounds for cell in cells), sum(cell.all_rounds for cell in cells)
+        if count:
+            reason = next(cell.reason for cell in cells if cell.disturbed_rounds)
+            yield f"{name}: {count} of {rounds} rounds are disturbed ({one_line(reason, 160)}); they are left out where the others are enough"
 
 
 def _same_file(before, after):
@@ -97,7 +122,7 @@ def notes(before, after, matched):
         found += _left_out_notes(side, names)
     found += _only_notes("old", matched.only_old, names)
     found += _only_notes("new", matched.only_new, names)
-    return [*found, *_machine_notes(matched), *_separate_run_notes(matched)]
+    return [*found, *_machine_notes(matched), *_session_notes(matched), *_separate_run_notes(matched), *_disturbed_notes(matched)]
 
 
 def _thresholds(matched):
@@ -111,7 +136,9 @@ def _too_few(matched):
     few = [cell for cell in matched.cells if cell.verdict == "too_few"]
     if not few:
         return ""
-    return f"; {len(few)} {'has' if len(few) == 1 else 'have'} too few samples to tell: {max(cell.rounds_needed for cell in few)} rounds on each side are enough"
+    unit = "sessions" if any(cell.before.sessions for cell in few) else "rounds"
+    return (f"; {len(few)} {'has' if len(few) == 1 else 'have'} too few samples to tell: {max(cell.rounds_needed for cell in few)} {unit} "
+            "on each side are enough")
 
 
 def _detectable(matched):
@@ -127,13 +154,15 @@ def _detectable(matched):
 
 def summary(matched, level):
     """One line: numbers of slower and faster cells, the threshold, and the changes that are detectable in the other cells."""
-    answers, within = matched.count("another_answer"), matched.count("within_threshold")
+    answers, within, disturbed = (matched.count(verdict) for verdict in ("another_answer", "within_threshold", "disturbed"))
     text = (f"{matched.count('slower')} of {len(matched.cells)} {'cell' if len(matched.cells) == 1 else 'cells'} slower, "
             f"{matched.count('faster')} faster beyond {_thresholds(matched)} at level {level:g}")
     if answers:
         text += f"; {answers} with another answer"
     if within:
         text += f"; {within} changed within the threshold"
+    if disturbed:
+        text += f"; {disturbed} changed in disturbed rounds only"
     return text + _too_few(matched) + _detectable(matched)
 
 

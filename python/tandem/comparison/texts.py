@@ -10,12 +10,14 @@ from .notes import notes, summary
 
 HEADING = ("cell", "old ms", "new ms", "new/old [95 %]", "p (Holm)", "verdict", "detectable")
 LEFT = (0, len(HEADING) - 2)
+UNIT = "milliseconds a frame, medians"
 
 
 def _milliseconds(ns):
-    """Milliseconds with about four digits, at most four decimals."""
+    """Milliseconds with about four digits, at most six decimals."""
     ms = ns * 1e-6
-    return f"{ms:.{4 if ms < 1 else 3 if ms < 10 else 2 if ms < 100 else 1 if ms < 1000 else 0}f}"
+    limits = ((0.01, 6), (0.1, 5), (1, 4), (10, 3), (100, 2), (1000, 1))
+    return f"{ms:.{next((decimals for limit, decimals in limits if ms < limit), 0)}f}"
 
 
 def _row(cell, name):
@@ -25,7 +27,7 @@ def _row(cell, name):
     ratio = f"{cell.ratio.value:.3f} [{cell.ratio.low:.3f}, {cell.ratio.high:.3f}]"
     p = "-" if cell.p_holm is None else "<0.0001" if cell.p_holm < 0.0001 else f"{cell.p_holm:.4f}"
     effect = "-" if cell.least_effect is None else f"{100 * cell.least_effect:.1f} %"
-    return name, _milliseconds(cell.before_ns), _milliseconds(cell.after_ns), ratio, p, verdict, effect
+    return name, _milliseconds(cell.before_ns / cell.before.frames), _milliseconds(cell.after_ns / cell.after.frames), ratio, p, verdict, effect
 
 
 def _rows(matched):
@@ -47,6 +49,7 @@ def text(before, after, matched, level):
     parts = [paragraph(f"old  {_origin(before)}", 5), paragraph(f"new  {_origin(after)}", 5)]
     if common:
         parts.append(paragraph(f"all  {common}", 5))
+    parts.append(paragraph(f"ms   {UNIT}", 5))
     parts += ["\n", table(rows, LEFT), "\n", *(paragraph(note, 2) for note in notes(before, after, matched))]
     return "".join(parts) + paragraph(summary(matched, level), 2)
 
@@ -59,7 +62,7 @@ def _escaped(part):
 def markdown(before, after, matched, level):
     common, rows = _rows(matched)
     lines = [f"**{_escaped(summary(matched, level))}**", "", f"old: {_escaped(_origin(before))}  ", f"new: {_escaped(_origin(after))}  ",
-             f"all: {_escaped(common)}", ""]
+             f"all: {_escaped(common)}  ", f"ms: {UNIT}", ""]
     drawn = ["".join(f"| {_escaped(part)} " for part in row) + "|" for row in rows]
     lines += [drawn[0], "|---|---:|---:|---:|---:|---|---:|", *drawn[1:], ""]
     return "\n".join([*lines, *(f"- {_escaped(one_line(note, 2000))}" for note in notes(before, after, matched))]) + "\n"
@@ -68,7 +71,8 @@ def markdown(before, after, matched, level):
 def _origin_json(cell, median_ns):
     def answer(digest):
         return dataclasses.asdict(digest) if digest else None
-    return {"line": cell.line, "median_ns": median_ns, "samples": cell.samples, "rounds": len(cell.rounds), "session": cell.session or None,
+    return {"line": cell.line, "median_ns": median_ns, "frame_ns": median_ns / cell.frames, "samples": cell.samples, "rounds": cell.all_rounds,
+            "disturbed_rounds": cell.disturbed_rounds, "sessions": cell.sessions or 1, "session": cell.session or None,
             "seed": cell.seed, "commit": cell.commit or None, "dirty": cell.dirty, "digest": answer(cell.pairs), "contact_digest": answer(cell.contacts)}
 
 
@@ -83,6 +87,7 @@ def _times_json(cell):
 
 def _cell_json(cell, name):
     return {"key": cell.before.key, "label": name, "verdict": cell.verdict, "threshold": cell.threshold, "paired": cell.paired,
+            "unit": "session" if cell.before.sessions else "round", "undisturbed_only": cell.undisturbed,
             "common_rounds": cell.common if cell.paired else None, "times": _times_json(cell), "old": _origin_json(cell.before, cell.before_ns),
             "new": _origin_json(cell.after, cell.after_ns)}
 
@@ -90,7 +95,7 @@ def _cell_json(cell, name):
 def _file_json(side, only):
     left_out = [{"line": cell.line, "key": cell.key, "status": cell.status, "failure": cell.failure or None} for cell in side.left_out]
     return {"file": side.path, "records": side.records, "cells": len(side.cells), "commits": [commit or None for commit in side.commits],
-            "repeated": side.repeated, "torn": side.torn, "left_out": left_out, "only_here": [cell.key for cell in only]}
+            "repeated": side.repeated, "pooled": side.pooled, "torn": side.torn, "left_out": left_out, "only_here": [cell.key for cell in only]}
 
 
 def as_json(before, after, matched, level):
