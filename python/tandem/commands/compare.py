@@ -1,19 +1,28 @@
 # SPDX-License-Identifier: MIT
 """tandem compare: which cells changed, by how much and how surely. Exits with 1 if a cell is slower, faster or has another answer."""
 import argparse
+import contextlib
+import tempfile
 
-from . import check_packages, run
+from . import check_packages, print_error, run
+
+FAILED = 3
+
 
 def _parsed(arguments):
     parser = argparse.ArgumentParser(prog="tandem compare", description=__doc__)
     parser.add_argument("old")
     parser.add_argument("new")
+    parser.add_argument("words", nargs="*")
     parser.add_argument("--threshold", type=float, help="percent")
     parser.add_argument("--level", type=float, default=0.05)
     parser.add_argument("--format", default="text", choices=("text", "json", "markdown"))
     parser.add_argument("--commit-old", default="")
     parser.add_argument("--commit-new", default="")
     parser.add_argument("--strict", action="store_true")
+    parser.add_argument("--run", action="store_true")
+    parser.add_argument("--sessions", type=int, default=10)
+    parser.add_argument("--out")
     return parser.parse_args(arguments)
 
 
@@ -34,9 +43,29 @@ def _compared_files(options):
     return _text(comparison.matched_files(options.old, options.new, _threshold(options), options.level, (options.commit_old, options.commit_new)), options)
 
 
+def _compared_programs(options):
+    from .. import comparison
+    from ..comparison import turns
+    with contextlib.ExitStack() as stack:
+        folder = options.out if options.out else stack.enter_context(tempfile.TemporaryDirectory(prefix="tandem-compare"))
+        both = turns.Turns(options.old, options.new, options.words, folder)
+        turns.prepared_folder(folder)
+        ended = both.measure(options.sessions)
+        old, new = (both.side(side) for side in turns.SIDES)
+    try:
+        text, code = _text(comparison.matched_cells(old, new, _threshold(options), options.level), options)
+    except comparison.lines.RecordError as problem:
+        if not (ended.failure or ended.wrong):
+            raise
+        text, code = "", 0 if ended.failure else print_error(problem, 1)
+    if ended.failure:
+        return text, print_error(ended.failure, FAILED)
+    return text, max(code, int(ended.wrong))
+
+
 def _make(options):
     check_packages("tandem compare", ("numpy",))
-    return _compared_files(options)
+    return _compared_programs(options) if options.run else _compared_files(options)
 
 
 def main(arguments, program):

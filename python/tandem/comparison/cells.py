@@ -63,7 +63,7 @@ class RecordedCells:
     """The records of one file, or of one commit in it. `commit`: the full commit, if one was given. `cells`: one for each key with records
     that are ok, in the order of the keys' first lines. `left_out`: records that failed, are wrong or have no samples. `repeated`: number of
     keys of which some records that are ok do not count. `torn`: the last line has no end and is ignored. `pooled`: number of keys of which
-    several sessions count."""
+    several sessions count. `is_program`: `path` is that of a program, which turns.py measured."""
     path: str
     commit: str
     cells: list
@@ -73,6 +73,7 @@ class RecordedCells:
     repeated: int
     torn: bool
     pooled: int = 0
+    is_program: bool = False
 
 
 class _NotARecord(Exception):

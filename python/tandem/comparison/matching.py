@@ -92,7 +92,7 @@ def _least_p(paired, old, new):
 
 
 def _are_pairs(before, after):
-    """Whether rounds of equal number are pairs: they are of one session, or are sessions of one name."""
+    """Whether rounds of equal number are pairs: they are of one session, or are sessions of one name (turns.py)."""
     is_one = before.sessions > 0 or (bool(before.session) and before.session == after.session)
     return is_one and any(number in after.rounds for number in before.rounds)
 

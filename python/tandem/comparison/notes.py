@@ -114,7 +114,8 @@ def notes(before, after, matched):
     found = list(_answer_notes(matched, names))
     same_commit = before.commit == after.commit
     if same_commit and _same_file(before.path, after.path):
-        found.append("old and new are the same records; FILE@COMMIT names those of one commit")
+        found.append("old and new are the same program" if before.is_program else
+                     "old and new are the same records; FILE@COMMIT names those of one commit")
     found += _file_notes(before)
     if before.path != after.path or not same_commit:
         found += _file_notes(after)
