@@ -7,7 +7,7 @@ import statistics
 
 from .. import rank_tests, resampling
 from .cells import RecordedCell
-from .pooling import pooled
+from .pooling import is_minority, pooled
 
 POWER = 0.8  # probability that the least effect is detected
 ON_GPUS, ELSEWHERE = 0.01, 0.03  # thresholds
@@ -124,12 +124,14 @@ def _compared(before, after, threshold, undisturbed=False):
 
 
 def _undisturbed(cell, level):
-    """The comparison of the undisturbed rounds of a cell; the cell itself if none of its rounds is disturbed, or if the others are too few for
-    a p below the level. The choice depends on numbers of rounds, not on times."""
+    """The comparison of the undisturbed rounds of a cell; the cell itself if none of its rounds is disturbed, or if the others are not more
+    than half, or too few for a p below the level. The choice depends on numbers of rounds, not on times."""
     if not cell.has_disturbed:
         return cell
+    every = _units(cell.before, cell.after, cell.paired, (frozenset(), frozenset()))
     units = _units(cell.before, cell.after, cell.paired, (cell.before.disturbed, cell.after.disturbed))
-    if _least_p(cell.paired, *map(len, units)) >= level:
+    are_few = all(is_minority(len(all_of) - len(left), len(all_of)) for all_of, left in zip(every, units))
+    if not are_few or _least_p(cell.paired, *map(len, units)) >= level:
         return cell
     return _compared(cell.before, cell.after, cell.threshold, undisturbed=True)
 

@@ -98,7 +98,7 @@ def _disturbed_notes(matched):
         count, rounds = sum(cell.disturbed_rounds for cell in cells), sum(cell.all_rounds for cell in cells)
         if count:
             reason = next(cell.reason for cell in cells if cell.disturbed_rounds)
-            yield f"{name}: {count} of {rounds} rounds are disturbed ({one_line(reason, 160)}); they are left out where the others are enough"
+            yield f"{name}: {count} of {rounds} rounds are disturbed ({one_line(reason, 160)}); they are left out where they are fewer than the others"
 
 
 def _same_file(before, after):

@@ -20,16 +20,22 @@ def counting(cells):
     return list(found.values())
 
 
+def is_minority(disturbed, rounds):
+    """Whether so many disturbed rounds of all rounds can be left out. Other work that disturbs half of them also meets others: the condition of
+    short rounds is known only roughly."""
+    return 2 * disturbed < rounds
+
+
 def _time(cell):
-    """The median of a session's undisturbed rounds; of all if all are disturbed."""
-    clean = [ns for number, ns in cell.rounds.items() if number not in cell.disturbed]
-    return statistics.median(clean or cell.times())
+    """The median of a session's undisturbed rounds; of all if half of them are disturbed."""
+    left_out = cell.disturbed if is_minority(len(cell.disturbed), len(cell.rounds)) else ()
+    return statistics.median(ns for number, ns in cell.rounds.items() if number not in left_out)
 
 
 def pooled(cells):
-    """One RecordedCell whose `rounds` are these sessions. A session is disturbed if all its rounds are."""
-    whole = [cell for cell in cells if len(cell.disturbed) == len(cell.rounds)]
+    """One RecordedCell whose `rounds` are these sessions. A session is disturbed if at least half of its rounds are."""
+    bad = [cell for cell in cells if not is_minority(len(cell.disturbed), len(cell.rounds))]
     return dataclasses.replace(
-        cells[-1], rounds={cell.session: _time(cell) for cell in cells}, disturbed=frozenset(cell.session for cell in whole),
+        cells[-1], rounds={cell.session: _time(cell) for cell in cells}, disturbed=frozenset(cell.session for cell in bad),
         reason=next((cell.reason for cell in cells if cell.reason), ""), sessions=len(cells), samples=sum(cell.samples for cell in cells),
         all_rounds=sum(cell.all_rounds for cell in cells), disturbed_rounds=sum(cell.disturbed_rounds for cell in cells))
