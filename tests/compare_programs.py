@@ -9,7 +9,7 @@ import sys
 import time
 import unittest
 
-from program import PROGRAM, SOURCE, Case, tandem
+from program import LONG, PROGRAM, SOURCE, Case, tandem
 
 LINE = json.loads((SOURCE / "results/h200/plates.jsonl").read_text().split("\n", 1)[0])
 # Appends a record to the file of --out, as 'tandem run' does. Times drift by 20 % a turn.
@@ -135,6 +135,30 @@ class ComparePrograms(Case):
         found = json.loads(out)
         self.assertEqual(([cell["verdict"] for cell in found["cells"]], found["old"]["records"]), (["too_few"], 2))
         self.assertIn("old and new are the same program", found["notes"])
+
+    @unittest.skipUnless(LONG, "long form")
+    def test_one_program_against_itself(self):
+        """No cell of 25 comparisons changes, whatever else the machine does."""
+        self.verdicts(PROGRAM, 25, {"not_shown", "within_threshold", "disturbed"})
+
+    @unittest.skipUnless(LONG, "long form")
+    def test_five_percent_are_found(self):
+        """In 45 of 50 cells that other work does not disturb."""
+        found = self.verdicts(PROGRAM.parent / "tests/slower", 13, {"slower", "not_shown", "within_threshold", "disturbed"})
+        self.assertGreaterEqual(found.count("slower"), 0.9 * (len(found) - found.count("disturbed")), found)
+
+    def verdicts(self, new, comparisons, allowed):
+        """The verdicts of the program against another one, four cells each, which are all allowed. The machine's noise exceeds 3 % without a core
+        of its own."""
+        found = []
+        for _ in range(comparisons):
+            _, out, errors = tandem("compare", "--run", "--format", "json", PROGRAM, new, "--", "plates:count=2", "--frames", 20, "--device", "host", "--threads", 1,
+                                    "--algorithm", "tiled,leaf_query", "--set", "k=8,18", "--repeat", 3, "--no-check", "--truth", "none", "--no-count", timeout=1200)
+            self.assertEqual(errors, [])
+            found += [cell["verdict"] for cell in json.loads(out)["cells"]]
+        print(f"\n  {len(found)} cells: {', '.join(f'{found.count(one)} {one}' for one in sorted(set(found)))}", file=sys.stderr)
+        self.assertLessEqual(set(found), allowed)
+        return found
 
 
 if __name__ == "__main__":
