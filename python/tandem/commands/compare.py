@@ -26,11 +26,16 @@ def _parsed(arguments):
     return parser.parse_args(arguments)
 
 
-def _text(found, options):
-    """The text of a comparison, and its exit code."""
+def _form(options):
+    """The function that makes the text of a comparison. Imports every module that compares: the files of these modules may change while two
+    programs are measured."""
     from ..comparison import texts
+    return {"text": texts.text, "json": texts.as_json, "markdown": texts.markdown}[options.format]
+
+
+def _text(found, options, form):
+    """The text of a comparison, and its exit code."""
     matched = found[2]
-    form = {"text": texts.text, "json": texts.as_json, "markdown": texts.markdown}[options.format]
     return form(*found, options.level), int(matched.changed or (options.strict and matched.count("disturbed") > 0))
 
 
@@ -40,12 +45,14 @@ def _threshold(options):
 
 def _compared_files(options):
     from .. import comparison
-    return _text(comparison.matched_files(options.old, options.new, _threshold(options), options.level, (options.commit_old, options.commit_new)), options)
+    found = comparison.matched_files(options.old, options.new, _threshold(options), options.level, (options.commit_old, options.commit_new))
+    return _text(found, options, _form(options))
 
 
 def _compared_programs(options):
     from .. import comparison
     from ..comparison import turns
+    form = _form(options)
     with contextlib.ExitStack() as stack:
         folder = options.out if options.out else stack.enter_context(tempfile.TemporaryDirectory(prefix="tandem-compare"))
         both = turns.Turns(options.old, options.new, options.words, folder)
@@ -53,7 +60,7 @@ def _compared_programs(options):
         ended = both.measure(options.sessions)
         old, new = (both.side(side) for side in turns.SIDES)
     try:
-        text, code = _text(comparison.matched_cells(old, new, _threshold(options), options.level), options)
+        text, code = _text(comparison.matched_cells(old, new, _threshold(options), options.level), options, form)
     except comparison.lines.RecordError as problem:
         if not (ended.failure or ended.wrong):
             raise
