@@ -161,12 +161,11 @@ void RankSession::copy_local_frame(const Frame& frame, const Frame& ghost_frame,
     copy(ghosts_.subdomain().ghosts, local_subdomain_.ghosts, false);
 }
 
-/// The same for the successor, which skips the same tetrahedra.
+/// The same for the frame and its successor.
 void RankSession::copy_local_input(const FrameInput& input) {
     copy_local_frame(input.frame, ghosts_.ghost_frame(), local_frame_);
     if (input.next == nullptr) return;
     copy_local_frame(*input.next, ghosts_.next_ghost_frame(), local_next_);
-    local_next_.skipped = local_frame_.skipped;
 }
 
 void RankSession::record_failure(const std::exception& error, Report& own) {
