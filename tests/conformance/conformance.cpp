@@ -22,6 +22,7 @@ const std::vector<SettingValues> shared_settings{
     {"residency", {"resident", "published"}}, {"convert", {"serial", "parallel"}},
     {"work_items", {"64", "2048"}},           {"broad", {"sphere", "device"}},
     {"self", {"off", "on", "deformable"}},    {"body_pair_capacity", {"1", "65536"}},
+    {"order", {"any", "canonical"}},          {"motion", {"none", "linear"}},
     {"pair_capacity", {"1", "100000"}},       {"contact_capacity", {"1", "100000"}}};
 
 const std::vector<SettingValues> settings_of_single_algorithms{
@@ -112,22 +113,36 @@ std::vector<Axis> axes_of(const Traversal& traversal) {
     return axes;
 }
 
-/// Splits a row that combines the device's broad phase with settings it does not support: one row with that
-/// broad phase, one with those settings.
+/// Replaces the values of a row that need the published data path, which neither the device's broad phase nor
+/// order=canonical nor motion=linear has, and those that bound no motion.
+SettingTexts resident_row(SettingTexts row) {
+    const auto set = [&row](const char* name, const char* value) {
+        if (row.contains(name)) row[name] = value;
+    };
+    set("residency", "resident");
+    set("batch", "0");
+    set("upload", "seeds");
+    set("sizes", "own");
+    if (row.at("motion") == "none") return row;
+    if (row.at("rounding") == "published") row["rounding"] = "safe";
+    if (row.contains("slabs") && row.at("slabs") == "three") row["slabs"] = "all";
+    return row;
+}
+
+/// Splits a row that combines values that exclude each other: one row with the later ones, one with those of
+/// the published data path. Contacts of a frame with a successor need exact decisions.
 std::vector<SettingTexts> possible(const std::vector<SettingTexts>& rows) {
+    const SettingTexts published{{"broad", "sphere"}, {"order", "any"}, {"motion", "none"}};
     std::vector<SettingTexts> all;
     for (const auto& row : rows) {
-        auto possible = row;
-        if (row.at("broad") == "device") {
-            if (row.contains("residency")) possible["residency"] = "resident";
-            if (row.contains("batch")) possible["batch"] = "0";
-            if (row.contains("upload")) possible["upload"] = "seeds";
-            if (row.contains("sizes")) possible["sizes"] = "own";
-        }
-        all.push_back(possible);
-        if (possible == row) continue;
+        const bool is_resident =
+            row.at("broad") == "device" || row.at("order") == "canonical" || row.at("motion") == "linear";
+        const auto first = is_resident ? resident_row(row) : row;
+        all.push_back(first);
+        if (row.at("motion") == "linear") all.back()["decision"] = "exact";
+        if (first == row) continue;
         all.push_back(row);
-        all.back()["broad"] = "sphere";
+        for (const auto& [name, value] : published) all.back()[name] = value;
     }
     return all;
 }
@@ -158,9 +173,12 @@ void expect_right(Device& on, const Traversal& traversal, const Scene& scene, co
     const auto geometry = geometry_of(settings);
     for (std::size_t i = 0; i < scene.frame_count; ++i) {
         const auto frame = scene.frame(i);
+        const auto next = scene.frame((i + 1) % scene.frame_count);
+        const FrameInput input(frame, geometry.motion == Motion::linear ? &next : nullptr);
         const auto expected =
-            reference(scene, frame, geometry, true, Method::brute_force, contact_settings_of(settings));
-        const auto result = run_among_all(*session, scene, frame);
+            reference(scene, input, geometry, true, Method::brute_force, contact_settings_of(settings));
+        const auto result =
+            input.next == nullptr ? run_among_all(*session, scene, frame) : session->run(input);
         EXPECT_EQ(result.download(), expected.pairs);
         EXPECT_EQ(result.digest(), expected.digest);
         EXPECT_EQ(result.contact_digest(), expected.contact_digest);
