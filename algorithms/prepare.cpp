@@ -242,6 +242,8 @@ std::unique_ptr<Session> Traversal::prepare(Device& device, const Scene& scene, 
             fmt::format("setting broad={} does not go with ranks of a job, none of which has all "
                         "bodies; choose broad=device",
                         settings.text("broad")));
+    if (!scene.frame)
+        throw InputError("ranks of a job divide the bodies of frame 0, and Scene::frame is not set; set it");
     std::unique_ptr<Session> session =
         std::make_unique<RankSession>(*this, device, scene, fitted(settings, device.info(), &scene), ranks);
     session->origin_ = origin_of(scene, geometry_of(settings).origin);

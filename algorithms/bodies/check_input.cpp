@@ -71,10 +71,6 @@ void check_lists(const Scene& scene, const Frame& frame) {
 } // namespace
 
 void check_scene(const Scene& scene) {
-    if (!scene.frame && scene.frame_count > 0)
-        throw InputError(
-            "Scene::frame is not set; frame 0 gives the origin of coordinates; without frames, set "
-            "frame_count to 0");
     std::vector<bool> is_used(scene.meshes.size());
     for (std::size_t body = 0; body < scene.bodies.size(); ++body) {
         const auto mesh = scene.bodies[body].mesh;

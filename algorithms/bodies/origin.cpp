@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/bodies/origin.h"
 
+#include "base/error.h"
+
 #include <cmath>
 
 namespace tandem {
@@ -37,6 +39,10 @@ Box box_around(const Scene& scene, const Frame& frame) {
 
 Eigen::Vector3d origin_of(const Scene& scene, Origin origin) {
     if (origin == Origin::world || scene.frame_count == 0) return Eigen::Vector3d::Zero();
+    if (!scene.frame)
+        throw InputError(
+            "setting origin=auto takes the middle of frame 0, and Scene::frame is not set; set it, "
+            "or origin=world");
     const auto box = box_around(scene, scene.frame(0));
     const double longest = box.sizes().maxCoeff();
     if (!(longest > 0) || !box.min().allFinite() || !box.max().allFinite()) return Eigen::Vector3d::Zero();

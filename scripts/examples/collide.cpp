@@ -30,7 +30,6 @@ void run(tandem::Device& device) {
     scene.name = scene.key = "two cubes";
     scene.meshes = {cube()};
     scene.bodies.resize(2); // both have mesh 0
-    scene.frame = poses;    // the first frame places the origin of coordinates
     const auto& tiled = tandem::algorithm("tiled");
     const std::array devices{&device};
     const auto session = tiled.prepare(devices, scene, tiled.settings({{"k", "18"}}));

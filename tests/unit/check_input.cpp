@@ -105,7 +105,6 @@ TEST_F(CheckInput, SuccessorsAreCheckedToo) {
 TEST_F(CheckInput, ScenesAreCheckedBeforeTheyArePrepared) {
     const std::vector<std::pair<std::function<void(Scene&)>, std::string>> mistakes{
         {[](Scene& scene) { scene.bodies.clear(); }, "has no bodies"},
-        {[](Scene& scene) { scene.frame = nullptr; }, "Scene::frame is not set"},
         {[](Scene& scene) { scene.bodies[3].mesh = 7; }, "body 3 has mesh 7, and the scene has 1 meshes"},
         {[](Scene& scene) { scene.meshes[0].tetrahedra.clear(); }, "mesh 0 has no tetrahedra"},
         {[](Scene& scene) { scene.meshes[0].boundary.clear(); }, "call complete_mesh"},
@@ -123,7 +122,13 @@ TEST_F(CheckInput, ScenesAreCheckedBeforeTheyArePrepared) {
          "never_meet has the pair 2, 9"}};
     for (const auto& [change, expected] : mistakes) EXPECT_THAT(of_scene(change), HasSubstr(expected));
     EXPECT_EQ(of_scene([](Scene& scene) { scene.meshes.emplace_back(); }), "") << "no body has this mesh";
-    EXPECT_EQ(of_scene([](Scene& scene) { scene.frame = nullptr, scene.frame_count = 0; }), "");
+    EXPECT_EQ(of_scene([](Scene& scene) { scene.frame = nullptr; }), "") << "no setting needs frame 0";
+    auto scene = scene_;
+    scene.frame = nullptr;
+    EXPECT_THAT(mistake([&] {
+                    prepared(scene, {{"origin", "auto"}});
+                }),
+                HasSubstr("Scene::frame is not set"));
 }
 
 TEST_F(CheckInput, SettingsByName) {
