@@ -236,7 +236,7 @@ TEST_F(ScenesDescription, ErrorsOfDynamicsNameThePath) {
     EXPECT_THAT(body(R"({"mesh": "g", "fixed": true})"), HasSubstr("/bodies/2: has no material"));
     EXPECT_THAT(body(R"({"mesh": "k", "material": "earth"})"), HasSubstr("/bodies/2/mesh: unknown mesh 'k'"));
     EXPECT_THAT(body(R"({"mesh": "s", "material": "iron"})"),
-                HasSubstr("/bodies/2/material: unknown material 'iron'; the nearest is"));
+                HasSubstr("/bodies/2/material: unknown material 'iron' (there are: "));
     EXPECT_THAT(body(R"({"mesh": "s", "material": "stone"})"),
                 HasSubstr("/dynamics/surfaces: has no entry for stone and stone"));
     EXPECT_THAT(stone(R"("poses": [[0,0,0,1,0,0,0]])"), HasSubstr("is replaced by poses"));
