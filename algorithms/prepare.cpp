@@ -115,7 +115,6 @@ FrameResult Session::run_among(const FrameInput& input, std::optional<std::span<
 
 FrameResult Session::run_checked(const FrameInput& input,
                                  std::optional<std::span<const BodyPair>> body_pairs) {
-    if (input.next != nullptr) check_successor(input.frame, *input.next);
     if (origin_ == Eigen::Vector3d::Zero()) return finished(do_run(input, body_pairs));
     const auto frame = counted_from(origin_, input.frame);
     if (input.next == nullptr) return finished(do_run(frame, body_pairs));
@@ -214,7 +213,7 @@ std::unique_ptr<Session> Traversal::prepare(std::span<Device* const> devices, co
                                             const Settings& settings) const {
     if (devices.empty()) throw InputError(fmt::format("{} needs a device to run on", name()));
     if (scene.bodies.empty()) throw InputError(fmt::format("scene {} has no bodies", scene.name));
-    check_scene(scene);
+    check_scene(scene, geometry_of(settings).precision);
     check(devices, settings);
     std::vector<Settings> fitting;
     for (const auto* device : devices) fitting.push_back(fitted(settings, device->info(), &scene));
@@ -231,7 +230,7 @@ std::unique_ptr<Session> Traversal::prepare(std::span<Device* const> devices, co
 std::unique_ptr<Session> Traversal::prepare(Device& device, const Scene& scene, const Settings& settings,
                                             Ranks& ranks) const {
     if (scene.bodies.empty()) throw InputError(fmt::format("scene {} has no bodies", scene.name));
-    check_scene(scene);
+    check_scene(scene, geometry_of(settings).precision);
     if (is_published(settings))
         throw InputError(
             fmt::format("{} with residency=published cannot share a frame between ranks: the paper's "

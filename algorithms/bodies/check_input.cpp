@@ -13,7 +13,7 @@ namespace tandem {
 
 namespace {
 
-void check_mesh(const Mesh& mesh, std::size_t number) {
+void check_mesh(const Mesh& mesh, std::size_t number, Precision precision) {
     if (mesh.tetrahedra.empty())
         throw InputError(fmt::format("mesh {} has no tetrahedra; a body needs at least one", number));
     if (mesh.boundary.size() != mesh.tetrahedra.size())
@@ -25,9 +25,13 @@ void check_mesh(const Mesh& mesh, std::size_t number) {
                 throw InputError(
                     fmt::format("mesh {}: tetrahedron {} has vertex {} of {}; call complete_mesh", number, t,
                                 vertex, mesh.vertices.size()));
+    const double limit = largest_coordinate(precision);
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-        if (!mesh.vertices[v].allFinite())
-            throw InputError(fmt::format("mesh {}: vertex {} is not finite; call complete_mesh", number, v));
+        if (!(mesh.vertices[v].array().abs() <= limit).all()) // also NaN
+            throw InputError(
+                fmt::format("mesh {}: vertex {} has a coordinate that is not finite or exceeds {:g}, "
+                            "the most of this precision",
+                            number, v, limit));
 }
 
 /// The squared length of a product of rounded rotations stays within it by orders of magnitude.
@@ -36,7 +40,7 @@ bool is_rotation(const Eigen::Quaterniond& rotation) {
     return std::abs(rotation.squaredNorm() - 1) <= tolerance; // false for NaN
 }
 
-void check_state(const Scene& scene, const Frame& frame, std::size_t body) {
+void check_state(const Scene& scene, const Frame& frame, Precision precision, std::size_t body) {
     const auto& mesh = scene.meshes[scene.bodies[body].mesh];
     if (!scene.bodies[body].deformable) {
         if (!is_rotation(frame.poses[body].rotation))
@@ -48,6 +52,7 @@ void check_state(const Scene& scene, const Frame& frame, std::size_t body) {
                                      "mesh; give one position a vertex",
                                      body, frame.deformed[body].size(), mesh.vertices.size()));
     }
+    check_range_of(scene, frame, precision, body);
     if (frame.skipped.empty()) return;
     const auto& skipped = frame.skipped[body];
     const bool is_ascending = std::ranges::adjacent_find(skipped, std::greater_equal<>()) == skipped.end();
@@ -70,7 +75,7 @@ void check_lists(const Scene& scene, const Frame& frame) {
 
 } // namespace
 
-void check_scene(const Scene& scene) {
+void check_scene(const Scene& scene, Precision precision) {
     std::vector<bool> is_used(scene.meshes.size());
     for (std::size_t body = 0; body < scene.bodies.size(); ++body) {
         const auto mesh = scene.bodies[body].mesh;
@@ -80,7 +85,7 @@ void check_scene(const Scene& scene) {
         is_used[mesh] = true;
     }
     for (std::size_t mesh = 0; mesh < scene.meshes.size(); ++mesh)
-        if (is_used[mesh]) check_mesh(scene.meshes[mesh], mesh);
+        if (is_used[mesh]) check_mesh(scene.meshes[mesh], mesh, precision);
     if (!std::ranges::is_sorted(scene.never_meet)) throw InputError("Scene::never_meet must be ascending");
     for (const auto& [a, b] : scene.never_meet)
         if (a > b || b >= scene.bodies.size())
@@ -91,14 +96,10 @@ void check_scene(const Scene& scene) {
 void check_frame(const Scene& scene, const Frame& frame, Precision precision,
                  std::optional<std::span<const std::uint32_t>> owned) {
     check_lists(scene, frame);
-    if (!owned) {
-        for (std::size_t body = 0; body < scene.bodies.size(); ++body) check_state(scene, frame, body);
-        return check_range(scene, frame, precision);
-    }
     for (std::uint32_t body = 0; body < scene.bodies.size(); ++body)
-        if (scene.bodies[body].fixed) check_state(scene, frame, body);
-    for (const auto body : *owned) check_state(scene, frame, body);
-    check_range_of(scene, frame, precision, *owned);
+        if (!owned || scene.bodies[body].fixed) check_state(scene, frame, precision, body);
+    if (!owned) return;
+    for (const auto body : *owned) check_state(scene, frame, precision, body);
 }
 
 } // namespace tandem

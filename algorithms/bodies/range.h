@@ -4,8 +4,6 @@
 #include "algorithms/bounds/geometry.h"
 #include "scenes/scene.h"
 
-#include <span>
-
 namespace tandem {
 
 /// The largest magnitude of coordinates, before and after the transform, for which no sum along a direction
@@ -16,8 +14,7 @@ double largest_coordinate(Precision precision);
 /// largest_coordinate.
 void check_range(const Scene& scene, const Frame& frame, Precision precision);
 
-/// The same for these bodies and all fixed ones.
-void check_range_of(const Scene& scene, const Frame& frame, Precision precision,
-                    std::span<const std::uint32_t> bodies);
+/// The same for the translation or vertices of one body, without its mesh.
+void check_range_of(const Scene& scene, const Frame& frame, Precision precision, std::size_t body);
 
 } // namespace tandem

@@ -64,15 +64,9 @@ TEST_F(RankMotion, SelfPairsAndExactPlacement) {
 
 /// A tetrahedron that one of two frames skips has no path.
 TEST_F(RankMotion, TetrahedraSkippedInEitherFrame) {
-    auto scene = soft_procession(16, 3, 0.1);
-    scene.frame = [whole = scene.frame](std::size_t number) {
-        auto frame = whole(number);
-        if (number % 2 == 1) return frame;
-        for (std::uint32_t body = 0; body < frame.poses.size(); ++body)
-            frame.skipped.push_back({body % 5, 40u - static_cast<std::uint32_t>(number)});
-        return frame;
-    };
-    expect_paths_equal(scene);
+    expect_paths_equal(skipping(soft_procession(16, 3, 0.1), [](std::uint32_t body, std::uint32_t frame) {
+        return std::vector{body % 5, 40 - frame};
+    }));
 }
 
 TEST_F(RankMotion, NeedsASuccessor) {

@@ -131,14 +131,9 @@ TEST_F(RankSessions, NextGhostsFitIntoTheSession) {
 
 /// Every rank passes the skipped tetrahedra of its own bodies, in one frame and not in the next.
 TEST_F(RankSessions, SkippedTetrahedraAreExchanged) {
-    auto scene = procession(24, 4, 0.05);
-    scene.frame = [whole = scene.frame](std::size_t number) {
-        auto frame = whole(number);
-        if (number % 2 == 1) return frame;
-        for (std::uint32_t body = 0; body < frame.poses.size(); ++body)
-            frame.skipped.push_back({body % 5, body % 5 + 3, 40u - static_cast<std::uint32_t>(number)});
-        return frame;
-    };
+    const auto scene = skipping(procession(24, 4, 0.05), [](std::uint32_t body, std::uint32_t frame) {
+        return std::vector{body % 5, body % 5 + 3, 40 - frame};
+    });
     for (const auto* traversal : algorithms()) {
         SCOPED_TRACE(traversal->name());
         const auto session = traversal->prepare(own_device(), scene, settings_of(*traversal), *job);

@@ -69,6 +69,19 @@ inline Scene soft_procession(std::uint32_t bodies, std::size_t frames, double st
     return scene;
 }
 
+/// The scene, whose even frames skip the tetrahedra skipped(body, frame) of each body.
+template<class Skipped>
+Scene skipping(Scene scene, const Skipped& skipped) {
+    scene.frame = [whole = scene.frame, skipped](std::size_t number) {
+        auto frame = whole(number);
+        if (number % 2 == 1) return frame;
+        for (std::uint32_t body = 0; body < frame.poses.size(); ++body)
+            frame.skipped.push_back(skipped(body, static_cast<std::uint32_t>(number)));
+        return frame;
+    };
+    return scene;
+}
+
 class RankSessions : public testing::Test {
 protected:
     /// Compares a frame run by all ranks with one that this rank runs alone on another session. Sessions with

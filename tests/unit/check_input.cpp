@@ -111,7 +111,7 @@ TEST_F(CheckInput, ScenesAreCheckedBeforeTheyArePrepared) {
         {[](Scene& scene) { scene.meshes[0].tetrahedra[4][2] = 27; },
          "mesh 0: tetrahedron 4 has vertex 27 of 27"},
         {[](Scene& scene) { scene.meshes[0].vertices[3].x() = std::numeric_limits<double>::infinity(); },
-         "mesh 0: vertex 3 is not finite"},
+         "mesh 0: vertex 3 has a coordinate that is not finite or exceeds 1e+36"},
         {[](Scene& scene) {
              scene.never_meet = {{2, 3}, {0, 1}};
          },

@@ -40,8 +40,8 @@ Action add_paper(CLI::App& app) {
                         "paper, for a GPU (default: small)")
         ->option_text("small|full");
     add_external_option(app, "--steps",
-                        "only these of the steps that --dry-run lists, and those that make their "
-                        "recordings: FIRST:LAST, N, a name, tableN or figureN, several with commas "
+                        "only these of the steps that --dry-run lists: FIRST:LAST or N; or tableN, figureN "
+                        "or a name, with the steps that make their recordings; several with commas "
                         "(default: all)");
     add_external_flag(app, "--again", "measure again what is already done");
     add_external_flag(app, "--measure-only", "draw nothing; draw later with --draw-only, on any machine");
