@@ -161,7 +161,7 @@ class Folder:
 
     def composition(self, scene, step):
         """The simulation of a scene with the published data path, composed of its recording and of a step with its frames; None without one of them.
-        Raises NotMeasured if they do not belong together."""
+        Raises NotMeasured if they have other contacts."""
         run = self.simulation(f"sim-{scene}")
         cells = [case for case in self.cases(step) if (case.algorithm, case.preset) == ("chunked", "published")]
         return composed(run, cells[0]) if run and cells else None
@@ -180,15 +180,16 @@ class Folder:
     def simulations(self, beginning):
         return [run for run in map(self.simulation, self.named(beginning)) if run]
 
+    def composition_or_none(self, scene, step):
+        """The same, and None if they have other contacts."""
+        try:
+            return self.composition(scene, step)
+        except NotMeasured:
+            return None
+
     def compositions(self):
         """The simulations of all scenes that can be composed."""
-        found = []
-        for scene in SCENES:
-            try:
-                found.append(self.composition(scene, f"steps-{scene}"))
-            except NotMeasured:
-                continue
-        return [run for run in found if run]
+        return [run for run in (self.composition_or_none(scene, f"steps-{scene}") for scene in SCENES) if run]
 
     def ceilings(self):
         found = self._json_lines("records/ceilings.jsonl")

@@ -48,7 +48,7 @@ def _composition_note(folder):
     texts = []
     for real in folder.simulations("serial-"):
         scene = real.name.removeprefix("serial-")
-        made = folder.composition(scene, f"check-{scene}")
+        made = folder.composition_or_none(scene, f"check-{scene}")
         value, count = composed_share_of(real, made) if made else (None, 0)
         if count:
             texts.append(f"In {count} steps of {scene} the composition takes {written(value)} times as long as a simulation with the published path.")
