@@ -79,6 +79,23 @@ class CommandLine(Case):
         environment = self.records(record)[0]["environment"]
         self.assertIn(f", commit {environment['commit']}{', dirty' if environment['dirty'] else ''}, {environment['compiler']}, ", out)
 
+    def test_citation(self):
+        """The program prints CITATION.bib, which agrees with CITATION.cff and with the project's version."""
+        status, out, errors = tandem("--cite")
+        self.assertEqual((status, errors), (0, []))
+        first, entries = out.split("\n", 1)
+        self.assertEqual(first, f"% {tandem('--version')[1].strip()}")
+        self.assertEqual(entries, (SOURCE / "CITATION.bib").read_text())
+        cff = (SOURCE / "CITATION.cff").read_text()
+        fields = dict(zip(("version", "date-released"), ("version", "date"))) | {"start": "pages", "end": "pages"}
+        fields |= {name: name for name in ("title", "journal", "volume", "year", "doi")} | {"issue": "number"}
+        values = re.findall(r"^ *([a-z-]+): \"?([^\n\"]+)\"?$", cff, re.M)
+        compared = [(fields[name], value) for name, value in values if name in fields]
+        self.assertEqual(len(compared), 3 + 2 * 8)
+        for name, value in compared:
+            self.assertRegex(entries, rf"{name} += {{[^}}]*{re.escape(value)}")
+        self.assertIn(re.search(r"project\(tandem VERSION ([\d.]+)", (SOURCE / "CMakeLists.txt").read_text())[1], [value for _, value in compared])
+
     def test_unknown_words(self):
         """Unknown words of any form and position: the error names the nearest known word and the help."""
         for arguments, named in (

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/commands/options/command_line.h"
 
+#include "harness/commands/options/citation.h"
 #include "harness/commands/options/completion.h"
 #include "harness/commands/options/contradictions.h"
 #include "harness/commands/options/unknown_words.h"
@@ -51,6 +52,9 @@ Actions add_commands(CLI::App& app) {
     };
     app.require_subcommand(1);
     add_version(app);
+    app.add_flag_callback(
+        "--cite", [] { throw CLI::CallForVersion(fmt::format("% {}\n{}", version_line(), citation()), 0); },
+        "print how to cite tandem and the papers whose methods it hosts (BibTeX)");
     Actions actions;
     for (const auto& command : subcommands) {
         auto* subcommand = app.add_subcommand(command.name, command.summary);
@@ -80,7 +84,8 @@ Action read_command_line(int argc, const char* const* argv) {
     } catch (const CLI::CallForHelp&) {
         return print(app->help());
     } catch (const CLI::CallForVersion& version) {
-        return print(fmt::format("{}\n", version.what()));
+        const std::string text = version.what();
+        return print(text.ends_with('\n') ? text : text + '\n');
     } catch (const CLI::ParseError& error) {
         const auto unknown = unknown_word(*app, words);
         throw InputError(unknown.empty() ? fmt::format("{}; see 'tandem --help'", error.what()) : unknown);
