@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 set(TANDEM_LEVELS 2 3 4 CACHE STRING "Levels of x86-64 that host kernels with lanes are compiled for; native: the level of this processor")
 set(TANDEM_HIGHER_K "" CACHE STRING "Values of k that host kernels of the levels above the lowest are compiled for; empty: all. Other values use the lowest level. Everything but kernels with lanes is then compiled with less optimisation")
+set(TANDEM_HOST_K "" CACHE STRING "Values of k that host kernels are compiled for; empty: all. For a first build in less time")
 
 # Sets `result` to the levels of TANDEM_LEVELS without duplicates, with `native` replaced by the level of this processor.
 function(tandem_levels result)
@@ -50,6 +51,9 @@ function(tandem_kernels target)
     string(REPLACE ":" ";" pair ${k_axes})
     list(GET pair 0 k)
     list(GET pair 1 axes)
+    if(TANDEM_HOST_K AND NOT k IN_LIST TANDEM_HOST_K)
+      continue()
+    endif()
     foreach(precision 32 64)
       list(APPEND geometries "AXES=${axes},K=${k},PRECISION=${precision}")
     endforeach()

@@ -232,6 +232,16 @@ class Commands(Case):
         self.bad("--frames requires --scene", "report", H200 / "ceilings.jsonl", "--frames", 0, *out)
         self.assertFalse((self.work / "none.html").exists())
 
+    def test_sentences_of_the_page(self):
+        """What the page says of each group and of all together, before the line that names the page."""
+        page, data = self.work / "words.html", json.loads(data_of(read_records([H200 / "plan.jsonl"]), 7_000_000, "", "").json)
+        status, out, errors = tandem("report", H200 / "plan.jsonl", "-o", page, "--sentences")
+        self.assertEqual((status, errors), (0, []))
+        self.assertGreater(len(data["groups"]), 3)
+        self.assertEqual(out.splitlines()[:-1], [f"{group['title']}: {group['words']}" for group in data["groups"]] + data["words"])
+        self.assertTrue(out.splitlines()[-1].startswith(f"{page}: "))
+        self.assertIn("of the difference from", out)
+
     def test_options_reach_the_export(self):
         page = self.work / "meshes.html"
         status, out, errors = tandem("view", "--mesh", self.good, "--mesh", self.good, "--pose", "-1 0 0 1 0 0 0", "--contacts", "-o", page)

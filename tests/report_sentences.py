@@ -57,6 +57,22 @@ class Sentences(unittest.TestCase):
         self.assertIn("a is the fastest of 3 with 1.000 ms a frame; the next, b, takes 2.000", sentences)
         self.assertIn("The slowest, c, takes 3.000 times as long", sentences)
 
+    def test_the_stage_that_makes_the_difference(self):
+        """Compared with the first cell that takes longer with its whole interval; times of stages that are shorter count against others."""
+        def named(first, second, third=None):
+            cells = [cell_of("a", ONE_MS), cell_of("b", TWO_MS)] + ([cell_of("c", [ms + 0.001 for ms in ONE_MS])] if third else [])
+            for cell, stages in zip(cells, (first, second, third)):
+                cell.stages = stages
+            return groups_and_sentences(cells)[1].partition("[")[2].partition("]. ")[2]
+        self.assertEqual(named({"traverse": 0.5, "contact": 0.4}, {"traverse": 1.3, "contact": 0.6}),
+                         "Most of the difference from b is in stage traverse: 0.500 ms a frame instead of 1.300.")
+        self.assertEqual(named({"traverse": 0.5}, {"traverse": 0.4, "balance": 1.0}),
+                         "Most of the difference from b is in stage balance: 0 ms a frame instead of 1.000.")
+        self.assertEqual(named({"traverse": 0.5, "contact": 0.3}, {"traverse": 0.9, "contact": 0.8, "refit": 0.3}),
+                         "The largest part of the difference from b is in stage contact: 0.300 ms a frame instead of 0.800.")
+        self.assertIn("from b is in stage traverse", named({"traverse": 0.5}, {"traverse": 1.5}, {"traverse": 3.0}))
+        self.assertEqual([named({}, {"traverse": 1.5}), named({"traverse": 1.0}, {"traverse": 0.9})], ["", ""])
+
     def test_indistinguishable_cells(self):
         nearly = [ONE_MS[4], ONE_MS[1] + 0.002, *ONE_MS[2:4], ONE_MS[0], *ONE_MS[5:]]
         groups, sentences = groups_and_sentences([cell_of("a", ONE_MS), cell_of("b", nearly)])

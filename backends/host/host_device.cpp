@@ -248,10 +248,11 @@ std::shared_ptr<Kernel::Impl> HostDevice::do_compile(const KernelSource& source,
     const auto [fixed, rest] = split(defines);
     const auto* row = find_row(source.name, entry, fixed, level_);
     if (!row)
-        throw DeviceError(
-            fmt::format("host: kernel '{}' of {} is not compiled for {}; the host has the values of setting "
-                        "k, in PRECISION 32 and 64",
-                        entry, source.name, fixed));
+        throw DeviceError(fmt::format(
+            "host: kernel '{}' of {} is not compiled for {}; the host has values of setting k, in "
+            "PRECISION 32 and 64, and a program built by scripts/run has k=8 and 18 only (all: "
+            "scripts/build)",
+            entry, source.name, fixed));
     auto impl = std::make_shared<HostKernelImpl>();
     impl->row = row;
     for (const auto& define : row->runtime) impl->runtime.emplace_back(define.set, define.initial);

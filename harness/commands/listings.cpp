@@ -46,6 +46,7 @@ Json device_json(const DeviceInfo& info, const std::string& clock, const std::st
             {"name", info.name},
             {"driver", info.driver},
             {"compiler", info.compiler},
+            {"kind", info.is_gpu ? "gpu" : "cpu"},
             {"compute_units", info.compute_units},
             {"memory_bytes", info.global_bytes},
             {"local_bytes", info.local_bytes},

@@ -32,6 +32,8 @@ Action add_report(CLI::App& app) {
     add_external_option(
         app, "--against",
         "OLD.jsonl or OLD.jsonl@COMMIT: compare the one FILE with it, as 'tandem compare' does");
+    add_external_flag(app, "--sentences",
+                      "also print the page's sentences: the fastest cell of each comparison");
     add_scene_options(app, add_external_option(app, "--scene", "also show this scene or recording"));
     return run_external_action(app);
 }

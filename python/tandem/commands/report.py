@@ -16,6 +16,7 @@ def _parsed(arguments):
     parser.add_argument("files", nargs="+")
     parser.add_argument("--output", default="report.html")
     parser.add_argument("--against")
+    parser.add_argument("--sentences", action="store_true")
     parser.add_argument("--scene")
     parser.add_argument("--frames")
     parser.add_argument("--every")
@@ -71,7 +72,8 @@ def _write(options, program):
     written = write_page(options.output, page)
     for note in data.notes:
         print(f"tandem: {note}", file=sys.stderr)
-    return f"{options.output}: {_contents(data.cells, records, len(options.files))}{scene}, {written / 1e6:.1f} MB\n"
+    sentences = "".join(f"{one}\n" for one in data.sentences) if options.sentences else ""
+    return f"{sentences}{options.output}: {_contents(data.cells, records, len(options.files))}{scene}, {written / 1e6:.1f} MB\n"
 
 
 def _make(options, program):

@@ -16,10 +16,12 @@ SHARED = [column for column, is_shared in enumerate(FIELDS.values()) if is_share
 
 @dataclasses.dataclass
 class PageData:
-    """The JSON text, the number of its cells, and notes on records that are left out."""
+    """The JSON text, the number of its cells, notes on records that are left out, and the page's sentences on each group of cells and on all
+    together."""
     json: str
     cells: int
     notes: list
+    sentences: list
 
 
 def dumped(value):
@@ -113,4 +115,5 @@ def data_of(records, max_bytes, program, date):
     cell_bytes = max(max_bytes - sum(size_of(dumped(part)) for part in rest.values()), 0)
     made = {"program": program, "date": date} | _cell_data(records, _Interned(), cell_bytes) | rest
     made |= {"files": records.files, "cell_records": records.cell_records, "notes": records.notes}
-    return PageData(dumped(made), len(records.cells), records.notes)
+    sentences = [f"{group['title']}: {group['words']}" for group in made["groups"]] + made["words"]
+    return PageData(dumped(made), len(records.cells), records.notes, sentences)

@@ -30,6 +30,24 @@ def _fastest(group, cells):
     return lead_sentence(named) + slowest
 
 
+def _stage_sentence(group, cells):
+    """Which stage makes the difference between the fastest cell and the first that takes longer with its whole interval; empty without such
+    a cell or without stages."""
+    slower = next((one for one in group.ranked[1:] if one.is_told_apart and one.ratio.low > 1), None)
+    if slower is None:
+        return ""
+    fast, slow = (cells[one.cell].stages for one in (group.ranked[0], slower))
+    if not fast or not slow:
+        return ""
+    more = {name: slow.get(name, 0) - fast.get(name, 0) for name in sorted({*fast, *slow})}
+    stage, whole = max(more, key=more.get), sum(more.values())
+    if more[stage] <= 0:
+        return ""
+    part = "Most" if 0 < whole < 2 * more[stage] else "The largest part"
+    return (f" {part} of the difference from {_label(group, slower.cell)} is in stage {stage}: {digits(fast[stage]) if stage in fast else 0} ms a frame instead of "
+            f"{digits(slow.get(stage, 0))}.")
+
+
 def _not_ranked(group, cells):
     """Sentences on cells that failed or were wrong, cut after about MAX_LETTERS."""
     sentences = ""
@@ -51,7 +69,7 @@ def group_sentences(group, cells):
     elif group.answers_differ:
         first = "Its cells found different sets of candidate pairs, so that times are of different work: none counts as the fastest."
     else:
-        first = _fastest(group, cells)
+        first = _fastest(group, cells) + _stage_sentence(group, cells)
     return first + _not_ranked(group, cells)
 
 

@@ -23,7 +23,8 @@ CONTACT_ERRORS = ("depth_relative", "normal_degrees", "point", "hausdorff", "vol
 class ShownCell:
     """scene, scene_name, scene_digest: the scene's key, name and digest. frames: number of frames in a sample. is_older: another record of
     its key is shown as the newest. row: values by FIELDS without the label, which is added later. curve: ms of each frame; rounds: ms per
-    frame of each round; None if there are none. samples: by round. run: identifies the run, as of lines.run_of."""
+    frame of each round; None if there are none. samples: by round. run: identifies the run, as of lines.run_of. stages: milliseconds a frame of
+    the stages that take time, the device's or the host's for stages without device time."""
     recorded: RecordedCell
     scene: str
     scene_name: str
@@ -35,6 +36,7 @@ class ShownCell:
     rounds: list | None = None
     samples: dict = dataclasses.field(default_factory=dict)
     run: tuple | None = None
+    stages: dict = dataclasses.field(default_factory=dict)
 
     def continues(self, other):
         """Whether this record has all rounds of the other and further ones, because that one was interrupted."""
@@ -70,6 +72,11 @@ def _stages(record, frames):
     stages = record.get("stages") or {}
     return {name: [_ms(at(stages[name], "device_ns", "median"), frames), _ms(at(stages[name], "host_ns", "median"), frames),
                    *(count(stages[name].get(what, 0)) for what in ("launches", "waits"))] for name in sorted(stages)}
+
+
+def _stage_times(stages):
+    times = {name: device or host for name, (device, host, *_) in stages.items()}
+    return {name: ms for name, ms in times.items() if ms}
 
 
 def _counts(stages):
@@ -135,4 +142,4 @@ def shown_cell(record, path, line, file):
     row = _row(record, read, (file, line), frames, scene)
     return ShownCell(read, scene, text(record["scene"]["name"]), text(record["scene"]["digest"]), frames, False, row,
                      _curve(at(record, "total_ns", "frames")), [rounded(ns / frames / 1e6) for ns in read.times()],
-                     lines.samples_by_round(record), lines.run_of(record))
+                     lines.samples_by_round(record), lines.run_of(record), _stage_times(_stages(record, frames)))
