@@ -2,6 +2,7 @@
 // Sessions that find their body pairs on the device: every algorithm and preset with every broad phase
 // against brute force, capacities of the body pair buffer, and the commands of a frame.
 #include "tests/support/broad.h"
+#include "tests/support/long_form.h"
 
 #include "algorithms/bounds/geometry.h"
 #include "harness/verify/reference.h"
@@ -32,6 +33,8 @@ TEST_P(BroadSessions, EveryPresetWithEveryBroadPhase) {
     std::uint64_t cells = 0;
     for (const auto* traversal : algorithms()) {
         for (const auto& p : traversal->presets()) {
+            // Presets of one algorithm for several GPUs differ in sizes only.
+            if (!long_form() && p.name.starts_with("published-")) continue;
             for (const std::string broad : {"sphere", "sphere_boxes", "tight", "device"}) {
                 SettingTexts given{{"broad", broad}};
                 if (declares(*traversal, "queue_bytes")) given["queue_bytes"] = "1048576";
