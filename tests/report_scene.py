@@ -22,6 +22,18 @@ EXTENT = """(() => {
   });
   return [box[0] / c.width, (box[1] + 1) / c.width, box[2] / c.height, (box[3] + 1) / c.height];
 })()"""
+# {"r,g,b": number of pixels} without the background.
+COLOURS = """(() => {
+  const c = document.getElementById('scene-canvas'), g = c.getContext('webgl2') || c.getContext('webgl');
+  tandem.sceneView.draw();
+  const pixels = new Uint8Array(4 * c.width * c.height), found = {};
+  g.readPixels(0, 0, c.width, c.height, g.RGBA, g.UNSIGNED_BYTE, pixels);
+  for (let i = 0; i < pixels.length; i += 4) {
+    const name = pixels.slice(i, i + 3).join();
+    if (name !== pixels.slice(0, 3).join()) found[name] = (found[name] ?? 0) + 1;
+  }
+  return found;
+})()"""
 MIDDLE = "(() => { const r = document.getElementById('scene-canvas').getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; })()"
 
 
@@ -42,6 +54,35 @@ class Scenes(ReportCase):
                 left, right, bottom, top = self.browser.run(EXTENT)
                 self.assertGreater(max(right - left, top - bottom), 0.8, (scene, width))
                 self.assertTrue(left > 0 and right < 1 and bottom > 0 and top < 1, (scene, width, left, right, bottom, top))
+
+    def pixels(self, frame):
+        """{colour: number of its pixels} of the points of contacts alone."""
+        self.browser.run(f"tandem.sceneView.show({frame}); tandem.sceneView.objects.forEach(object => {{ object.visible = false; }}); "
+                         "tandem.sceneView.contacts.normals.visible = false")
+        return self.browser.run(COLOURS)
+
+    def test_contacts_have_the_colours_of_their_depths(self):
+        self.view(("plates", "--frames", "20:21", "--contacts"), 1400, 900)
+        data = self.browser.run("({deepest: tandem.sceneView.data.deepest, depths: [0, 1].map(i => [...tandem.depthsOf(tandem.sceneView.data, i)])})")
+        deepest, depths = data["deepest"], data["depths"]
+        self.assertEqual(max(map(max, depths)), 65534)
+        self.assertGreater(deepest, 0)
+        frame = 0 if 65534 in depths[0] else 1
+        drawn = self.pixels(frame)
+        self.assertIn("253,231,37", drawn)   # the deepest is yellow
+        self.assertGreater(len(drawn), 10)   # others have colours between
+        self.assertNotIn("255,45,149", drawn)
+        legend = self.text("#depth-legend")
+        for part in ("depth of contacts", f"{deepest:.4g} m", f"{deepest / 2:.4g} m"):
+            self.assertIn(part, legend)
+
+    def test_contacts_without_depth_are_plain(self):
+        self.view(("plates", "--frames", "20", "--contacts"), 1400, 900)
+        self.browser.run("tandem.sceneView.data.deepest = 0")
+        drawn = self.pixels(0)  # edges of points are blended with the background
+        self.assertEqual(max(drawn, key=drawn.get), "255,45,149")
+        self.assertNotIn("253,231,37", drawn)
+        self.assertIsNone(self.browser.run("tandem.depthLegend(tandem.sceneView.data)"))
 
     def scrolls(self):
         self.browser.run("document.getElementById('scene-canvas').scrollIntoView({block: 'center'})")

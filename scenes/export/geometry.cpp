@@ -74,6 +74,26 @@ GeometrySizes sizes_of(const Scene& scene, const std::vector<Surface>& surfaces,
     return sizes;
 }
 
+/// The largest penetration depth of the contacts of all frames; 0 without contacts that penetrate.
+double deepest_of(const std::vector<std::vector<double>>& depths) {
+    double deepest = 0;
+    for (const auto& own : depths)
+        for (const double depth : own)
+            if (std::isfinite(depth)) deepest = std::max(deepest, -depth);
+    return deepest;
+}
+
+/// Depths as parts of the deepest one, in 16 bits: 0 touches or is apart, 65534 is the deepest, and 65535 has
+/// no depth.
+std::vector<std::uint16_t> scaled(const std::vector<double>& depths, double deepest) {
+    std::vector<std::uint16_t> parts;
+    for (const double depth : depths) {
+        const auto part = deepest > 0 ? std::clamp(-depth / deepest, 0.0, 1.0) : 0.0;
+        parts.push_back(static_cast<std::uint16_t>(std::isfinite(depth) ? std::lround(part * 65534) : 65535));
+    }
+    return parts;
+}
+
 /// Builds the JSON of one scene.
 class GeometryJson {
 public:
@@ -98,7 +118,8 @@ private:
     GeometryCut cut_;
     std::vector<std::size_t> frames_;
     std::vector<std::vector<Pose>> poses_;
-    std::vector<Points> points_, normals_; ///< shown contacts, by frame
+    std::vector<Points> points_, normals_;    ///< shown contacts, by frame
+    std::vector<std::vector<double>> depths_; ///< of these contacts; in the scene's unit of length
     OrderedJson json_, notes_ = OrderedJson::array();
 };
 
@@ -192,11 +213,13 @@ void GeometryJson::add_frame(const Frame& frame) {
 void GeometryJson::add_contacts(const std::vector<ContactPoint>& found) {
     auto& points = points_.emplace_back();
     auto& normals = normals_.emplace_back();
+    auto& depths = depths_.emplace_back();
     const auto shown = std::min(found.size(), cut_.contacts);
     for (std::size_t i = 0; i < shown; ++i) {
         const auto& contact = found[i * found.size() / shown];
         points.emplace_back(contact.point.data());
         normals.emplace_back(contact.normal.data());
+        depths.push_back(contact.depth);
     }
     json_["contacts"].push_back({{"found", found.size()}});
 }
@@ -233,6 +256,8 @@ void GeometryJson::write_contacts() {
     for (const auto& points : points_)
         for (const auto& point : points) box.extend(point);
     const Quantised quantised(box);
+    const auto deepest = deepest_of(depths_);
+    json_["deepest"] = deepest;
     for (std::size_t i = 0; i < points_.size(); ++i) {
         std::vector<std::int8_t> normals;
         for (const auto& normal : normals_[i])
@@ -241,6 +266,7 @@ void GeometryJson::write_contacts() {
         auto& contacts = json_["contacts"][i];
         contacts.update(points_json(points_[i], quantised));
         contacts["normals"] = base64_of(normals);
+        contacts["depths"] = base64_of(scaled(depths_[i], deepest));
         all += contacts["found"].get<std::size_t>();
         shown += points_[i].size();
     }

@@ -8,9 +8,9 @@ namespace tandem::exporting {
 namespace {
 
 constexpr std::size_t box_vertices = 8, box_triangles = 12;
-constexpr std::size_t pose_bytes = 14;   ///< seven numbers of 16 bits
-constexpr std::size_t vertex_bytes = 6;  ///< three numbers of 16 bits
-constexpr std::size_t contact_bytes = 9; ///< a vertex, and a normal of three bytes
+constexpr std::size_t pose_bytes = 14;    ///< seven numbers of 16 bits
+constexpr std::size_t vertex_bytes = 6;   ///< three numbers of 16 bits
+constexpr std::size_t contact_bytes = 11; ///< a vertex, a normal of three bytes, a depth of two
 
 /// Sizes of all meshes after some are replaced by boxes.
 struct Costs {

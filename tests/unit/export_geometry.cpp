@@ -5,6 +5,8 @@
 #include "base/base64.h"
 
 #include <array>
+#include <cmath>
+#include <cstring>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -71,7 +73,7 @@ TEST(ExportGeometry, EveryCutFitsItsBudget) {
                 const auto bytes = mesh_bytes(2000, 4000)
                                    + shown.frames
                                          * (shown.bodies * 14 + std::min(deformable, bodies) * vertices * 6
-                                            + shown.contacts * 9);
+                                            + shown.contacts * 11);
                 EXPECT_LE(bytes, budget.bytes + budget.bytes / 4)
                     << bodies << ' ' << deformable << ' ' << frames;
             }
@@ -119,8 +121,34 @@ TEST(ExportGeometry, PartsHaveTheirSizes) {
     EXPECT_EQ(bytes(json["body_meshes"]), scene.bodies.size() * sizeof(std::uint32_t));
     EXPECT_EQ(bytes(json["contacts"][0]["points"]), 5 * 3 * sizeof(std::uint16_t));
     EXPECT_EQ(bytes(json["contacts"][0]["normals"]), 5 * 3u);
+    EXPECT_EQ(bytes(json["contacts"][0]["depths"]), 5 * sizeof(std::uint16_t));
     EXPECT_EQ(json["contacts"][0]["found"], 5);
     EXPECT_FALSE(json.contains("times"));
+}
+
+/// Depths are parts of the deepest one of all frames. Contacts that touch or are apart have depth 0.
+TEST(ExportGeometry, DepthsArePartsOfTheDeepest) {
+    const auto scene = make_scene("plates:frames=2");
+    std::size_t calls = 0;
+    const GeometryParts parts{
+        .chunks = one_chunk, .contacts = [&](const Frame&) {
+            std::vector<ContactPoint> contacts(4);
+            const double all[2][4] = {{-0.5, 0, 0.25, std::nan("")}, {-1, -2, 0, 0}};
+            for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i].depth = all[calls][i];
+            ++calls;
+            return contacts;
+        }};
+    const auto json = nlohmann::json::parse(geometry_json(scene, std::array<std::size_t, 2>{0, 1}, parts));
+    const auto depths = [&](std::size_t frame) {
+        const auto text = json["contacts"][frame]["depths"].get<std::string>();
+        const auto bytes = *base64::decode(text, text.size());
+        std::vector<std::uint16_t> numbers(bytes.size() / sizeof(std::uint16_t));
+        std::memcpy(numbers.data(), bytes.data(), bytes.size());
+        return numbers;
+    };
+    EXPECT_EQ(json["deepest"], 2.0);
+    EXPECT_EQ(depths(0), (std::vector<std::uint16_t>{16384, 0, 0, 65535}));
+    EXPECT_EQ(depths(1), (std::vector<std::uint16_t>{32767, 65534, 0, 0}));
 }
 
 } // namespace

@@ -11,7 +11,7 @@ from .libraries import CHARTS, SCENES, scripts
 
 FOLDER = pathlib.Path(__file__).parent / "page"
 CHART_SCRIPTS = ("words.js", "tables.js", "axes.js", "charts.js", "figures.js", "stages.js", "sweeps.js", "errors.js", "kernels.js")
-SCENE_SCRIPTS = ("scene.js", "scene_controls.js")
+SCENE_SCRIPTS = ("contacts.js", "scene.js", "scene_controls.js")
 
 
 @dataclasses.dataclass

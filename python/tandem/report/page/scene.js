@@ -32,7 +32,7 @@ tandem.SceneView = class {
     this.bodyMeshes = new Uint32Array(tandem.bytes(data.body_meshes).buffer);
     this.kinds = tandem.bytes(data.body_kinds);
     this.makeBodies();
-    this.makeContacts();
+    this.contacts = data.contacts ? new tandem.Contacts(data, this.scene) : null;
     this.show(0);
     this.lookAtAll();
   }
@@ -104,18 +104,6 @@ tandem.SceneView = class {
     return object;
   }
 
-  makeContacts() {
-    const material = new THREE.PointsMaterial({color: 0xff2d95, size: 3, sizeAttenuation: false, depthTest: false});
-    this.contactPoints = new THREE.Points(new THREE.BufferGeometry(), material);
-    this.contactNormals = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({color: 0xff2d95, depthTest: false}));
-    for (const object of [this.contactPoints, this.contactNormals]) {
-      object.frustumCulled = false;
-      object.renderOrder = 1;
-      object.visible = Boolean(this.data.contacts);
-      this.scene.add(object);
-    }
-  }
-
   colour(by) {
     this.colouring = by;
     const chunk = new THREE.Color();
@@ -152,22 +140,8 @@ tandem.SceneView = class {
       object.instanceMatrix.needsUpdate = true;
     }
     this.deformable.forEach((object, i) => this.setPositions(object.geometry, tandem.points(this.data.deformed[frame][i])));
-    if (this.data.contacts) this.showContacts(this.data.contacts[frame]);
+    this.contacts?.show(frame, this.radius);
     this.draw();
-  }
-
-  showContacts(contacts) {
-    const points = tandem.points(contacts);
-    const normals = new Int8Array(tandem.bytes(contacts.normals).buffer);
-    const length = (this.radius || 1) * 0.03;
-    const lines = new Float32Array(points.length * 2);
-    for (let i = 0; i < points.length; i += 3)
-      for (let axis = 0; axis < 3; ++axis) {
-        lines[2 * i + axis] = points[i + axis];
-        lines[2 * i + 3 + axis] = points[i + axis] + length * normals[i + axis] / 127;
-      }
-    this.contactPoints.geometry.setAttribute("position", new THREE.BufferAttribute(points, 3));
-    this.contactNormals.geometry.setAttribute("position", new THREE.BufferAttribute(lines, 3));
   }
 
   /** Sets the camera so that all bodies that are not fixed fill the view, or all bodies if all are fixed. */
@@ -181,7 +155,7 @@ tandem.SceneView = class {
     this.camera.near = this.radius / 200;
     this.camera.far = this.radius * 20 + all * 10;
     this.fill(points, sphere.center, new THREE.Vector3(0.6, 0.55, 1).normalize());
-    if (this.data.contacts) this.showContacts(this.data.contacts[this.frame]);
+    this.contacts?.show(this.frame, this.radius);
   }
 
   /** Moves the camera, which looks against the direction `back`, so that the points just fit the view. A point at (x, y, z) in the camera's axes

@@ -18,7 +18,7 @@ tandem.view = data => {
     "Page Up and Page Down go through frames"});
   const stage = element("div", {class: "stage"}, canvas);
   const words = element("p", {role: "status", "aria-live": "polite", id: "scene-words"}, tandem.sceneWords(data, 0));
-  tandem.show("view", facts, ...notes, stage, words);
+  tandem.show("view", facts, ...notes, stage, words, ...[tandem.depthLegend(data)].filter(legend => legend));
   // The scene is made when it comes near the visible part of the page, so that a page with records loads faster.
   new IntersectionObserver((entries, observer) => {
     if (!entries.some(entry => entry.isIntersecting)) return;
@@ -85,7 +85,7 @@ tandem.Player = class {
     const made = tandem.element("button", {type: "button", "aria-pressed": "true", onclick: () => {
       const shown = made.getAttribute("aria-pressed") !== "true";
       made.setAttribute("aria-pressed", String(shown));
-      this.view.contactPoints.visible = this.view.contactNormals.visible = shown;
+      this.view.contacts.visible = shown;
       this.view.draw();
     }}, "Contacts");
     return made;
