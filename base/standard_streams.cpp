@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "base/standard_streams.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -28,6 +29,13 @@ void turn_into_error(int signal) {
     sigaction(signal, &action, nullptr);
 }
 
+/// The escape at the beginning of a text that selects a colour: "\\033[1;32m"; empty if there is none.
+std::string_view colour_at(std::string_view text) {
+    if (!text.starts_with("\033[")) return {};
+    const auto end = text.find_first_not_of("0123456789;", 2);
+    return end != text.npos && text[end] == 'm' ? text.substr(0, end + 1) : std::string_view{};
+}
+
 } // namespace
 
 void prepare_standard_streams() {
@@ -45,9 +53,22 @@ bool prints_colour() {
     return isatty(STDOUT_FILENO) != 0 && (no_color == nullptr || *no_color == '\0');
 }
 
-void put_text(std::string_view text) {
+void put_bytes(std::string_view bytes) {
     if (output_error != 0 || is_silent) return;
-    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) output_error = errno;
+    if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size()) output_error = errno;
+}
+
+void put_text(std::string_view text) {
+    std::string shown;
+    while (!text.empty()) {
+        const auto end = std::min(text.find("\033["), text.size());
+        const auto colour = colour_at(text.substr(end));
+        shown += visible(text.substr(0, end), "\n\t");
+        // An escape that is no colour is visible, too.
+        shown += colour.empty() ? visible(text.substr(end, 1)) : std::string(colour);
+        text.remove_prefix(std::min(end + std::max<std::size_t>(colour.size(), 1), text.size()));
+    }
+    put_bytes(shown);
 }
 
 void print_message_text(std::string_view text) {

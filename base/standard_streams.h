@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "base/text_lines.h"
+
 #include <fmt/format.h>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 namespace tandem {
@@ -13,13 +16,34 @@ namespace tandem {
 /// signal.
 void prepare_standard_streams();
 
-/// Prints to standard output. Never fails: finish_output() reports the first error, and nothing more is
-/// printed after it, so that measuring goes on without a reader.
+/// Writes bytes for another program to standard output, as they are. Never fails, as put_text().
+void put_bytes(std::string_view bytes);
+
+/// A value for a format: a text without control characters, because it may be a file's words (visible()); any
+/// other value as it is.
+template<class Value>
+auto printable(const Value& value) {
+    if constexpr (std::is_convertible_v<const Value&, std::string_view>)
+        return visible(value);
+    else
+        return value;
+}
+
+/// A text of a format and values that are printable(). Control characters of the format itself stay.
+template<class... Values>
+std::string printed(fmt::format_string<Values...> format, const Values&... values) {
+    return fmt::format(fmt::runtime(format), printable(values)...);
+}
+
+/// Prints a text of several lines to standard output, such as a table: line ends, tabs and colours (SGR)
+/// stay, other control characters do not. Never fails: finish_output() reports the first error, and nothing
+/// more is printed after it, so that measuring goes on without a reader.
 void put_text(std::string_view text);
 
+/// Prints a line of a format; the values are printable().
 template<class... Values>
 void put(fmt::format_string<Values...> format, Values&&... values) {
-    put_text(fmt::format(format, std::forward<Values>(values)...));
+    put_text(printed<Values...>(format, values...));
 }
 
 /// Whether standard output is a terminal and NO_COLOR is not set (no-color.org).
@@ -30,7 +54,7 @@ void print_message_text(std::string_view text);
 
 template<class... Values>
 void print_message(fmt::format_string<Values...> format, Values&&... values) {
-    print_message_text(fmt::format(format, std::forward<Values>(values)...));
+    print_message_text(printed<Values...>(format, values...));
 }
 
 /// From now on the functions above print nothing. For ranks: another process prints the same text.
@@ -41,7 +65,7 @@ void print_message_text_from_every_rank(std::string_view text);
 
 template<class... Values>
 void print_message_from_every_rank(fmt::format_string<Values...> format, Values&&... values) {
-    print_message_text_from_every_rank(fmt::format(format, std::forward<Values>(values)...));
+    print_message_text_from_every_rank(printed<Values...>(format, values...));
 }
 
 /// Writes the buffered output of put(). Returns false when any of the output could not be written.

@@ -2,6 +2,7 @@
 #include "base/text_lines.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <fmt/format.h>
 
 namespace tandem {
@@ -17,6 +18,30 @@ std::size_t bytes_of(std::string_view text, std::size_t count) {
     for (; bytes < text.size(); ++bytes)
         if (!is_continuation(text[bytes]) && count-- == 0) return bytes;
     return bytes;
+}
+
+struct Character {
+    std::uint32_t code = 0;
+    std::size_t bytes = 1;
+};
+
+/// The first character of a text that is not empty; a byte that is not UTF-8 is a character of its own.
+Character first_character(std::string_view text) {
+    const auto byte = static_cast<unsigned char>(text.front());
+    const std::size_t bytes = byte < 0xc2u ? 1 : byte < 0xe0u ? 2 : byte < 0xf0u ? 3 : byte < 0xf5u ? 4 : 1;
+    if (bytes == 1 || bytes > text.size()) return {byte, 1};
+    std::uint32_t code = byte & (0xffu >> (bytes + 1));
+    for (const char next : text.substr(1, bytes - 1)) {
+        if (!is_continuation(next)) return {byte, 1};
+        code = code << 6 | (static_cast<unsigned char>(next) & 0x3fu);
+    }
+    return {code, bytes};
+}
+
+/// C0, C1, marks of direction (Unicode Bidi_Control), and separators of lines and paragraphs.
+bool is_control(std::uint32_t code) {
+    return code < 0x20 || (code >= 0x7f && code < 0xa0) || code == 0x61c || code == 0x200e || code == 0x200f
+           || (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
 }
 
 } // namespace
@@ -57,18 +82,20 @@ std::string paragraph(std::string_view text, std::size_t indent) {
     return result;
 }
 
-std::string visible(std::string_view text) {
+std::string visible(std::string_view text, std::string_view kept) {
     std::string shown;
-    for (const char byte : text) {
-        const auto code = static_cast<unsigned char>(byte);
-        if (byte == '\n')
+    while (!text.empty()) {
+        const auto [code, bytes] = first_character(text);
+        const auto own = text.substr(0, bytes);
+        if (kept.find(text.front()) != kept.npos || !is_control(code))
+            shown += own;
+        else if (text.front() == '\n')
             shown += "\\n";
-        else if (byte == '\t')
+        else if (text.front() == '\t')
             shown += "\\t";
-        else if (code < ' ' || code == 0x7f)
-            shown += fmt::format("\\x{:02x}", code);
         else
-            shown += byte;
+            shown += code != 0x7f && bytes == 1 ? fmt::format("\\x{:02x}", code) : fmt::format("\\u{:04x}", code);
+        text.remove_prefix(bytes);
     }
     return shown;
 }

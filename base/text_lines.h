@@ -21,7 +21,10 @@ std::vector<std::string> wrap(std::string_view text, std::size_t width);
 /// wrap() to `line_columns`. Lines after the first begin with `indent` spaces. Each line ends with a newline.
 std::string paragraph(std::string_view text, std::size_t indent);
 
-/// The text with control characters written as \\n or \\x1b, for messages that contain text from a file.
-std::string visible(std::string_view text);
+/// The text with control characters as \\n, \\x1b or \\u009b, so that words of a file cannot move a
+/// terminal's cursor, end a line or reverse the order of letters: C0, C1, marks of direction and separators
+/// of lines. A byte that is not UTF-8 and that a terminal could take for C1 is \\x9b. Characters in `kept`
+/// stay.
+std::string visible(std::string_view text, std::string_view kept = {});
 
 } // namespace tandem

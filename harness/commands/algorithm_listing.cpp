@@ -111,7 +111,7 @@ Json algorithm_json(const Traversal& traversal, bool baseline) {
 }
 
 /// Prints a text wrapped to a terminal. Lines after the first begin at column `indent`.
-void put_lines(const std::string& text, std::size_t indent) { put("{}", paragraph(text, indent)); }
+void put_lines(const std::string& text, std::size_t indent) { put_text(paragraph(text, indent)); }
 
 void print_heading(const Traversal& traversal, bool baseline) {
     put_lines(fmt::format("{}{}: {}", traversal.name(),
@@ -199,7 +199,7 @@ int algorithms_command(const AlgorithmsOptions& options) {
         else
             (options.names.empty() ? print_algorithm : explain_algorithm)(*traversal, baseline);
     }
-    if (options.json) put("{}\n", all.dump(2));
+    if (options.json) put_text(all.dump(2) + "\n");
     return 0;
 }
 

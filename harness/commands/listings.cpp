@@ -78,9 +78,9 @@ int measure_devices(const DevicesOptions& options) {
             const auto ceilings = measure_ceilings(*device);
             records.push_back(ceilings_record(*device, ceilings));
             if (!file.failed()) file.append_or_report(records.back());
-            if (!options.json) put("{}", ceilings_table(device->info(), ceilings));
+            if (!options.json) put_text(ceilings_table(device->info(), ceilings));
         }
-    if (options.json) put("{}\n", records.dump(2));
+    if (options.json) put_text(records.dump(2) + "\n");
     return file.failed() ? 3 : 0;
 }
 
@@ -177,10 +177,10 @@ int devices_command(const DevicesOptions& options) {
             entry["devices"].push_back(device_json(info, clock, same, now));
             if (!json) print_device(info, clock, same, now);
         }
-        if (!json && !backend.reason.empty()) put("{}\n", backend.reason);
+        if (!json && !backend.reason.empty()) put_text(backend.reason + "\n");
         all.push_back(entry);
     }
-    if (json) put("{}\n", all.dump(2));
+    if (json) put_text(all.dump(2) + "\n");
     check_required(backends, options.require);
     return 0;
 }
@@ -197,7 +197,7 @@ int scenes_command(bool json) {
             all.push_back(scene_json(kind, make_scene(kind.name)));
             all.back()["hard"] = hard_json(hard_family(kind.name.substr(5)));
         }
-        put("{}\n", all.dump(2));
+        put_text(all.dump(2) + "\n");
         return 0;
     }
     print_scene_table(all);

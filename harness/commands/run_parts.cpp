@@ -40,12 +40,12 @@ std::vector<Row> rows_of(const Job& job, std::span<const CellResult* const> resu
 void print_results(std::span<const Row> rows, const std::vector<Verdict>& verdicts,
                    std::span<const CellResult* const> results) {
     if (rows.empty()) return;
-    put("\n{}\n", result_tables(rows, verdicts, prints_colour()));
+    put_text("\n" + result_tables(rows, verdicts, prints_colour()) + "\n");
     for (const auto* result : results) {
         if (!result->measured) continue;
         const auto doubt = doubts(*result);
-        put("{}: {}{}\n", describe(*result->cell), answer_text(result->measurement),
-            doubt.empty() ? "" : "\n  " + doubt);
+        put("{}: {}\n", describe(*result->cell), answer_text(result->measurement));
+        if (!doubt.empty()) put("  {}\n", doubt);
     }
 }
 

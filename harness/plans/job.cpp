@@ -10,6 +10,7 @@
 #include "harness/record/record.h"
 #include "harness/sampling/local_sampler.h"
 #include "base/standard_streams.h"
+#include "base/text_lines.h"
 #include "base/error.h"
 
 #include <fmt/format.h>
@@ -157,14 +158,14 @@ std::filesystem::path checks_folder(const RunOptions& options) {
 
 std::string scene_text(const Scene& scene, const FrameRange& range) {
     auto text = fmt::format("scene {}: {} bodies, {} vertices, {} tetrahedra, frames {}:{}, digest {:016x}\n",
-                            scene.key, scene.bodies.size(), vertex_count(scene), tetrahedron_count(scene),
-                            range.first(), range.last(), scene.digest);
+                            visible(scene.key), scene.bodies.size(), vertex_count(scene),
+                            tetrahedron_count(scene), range.first(), range.last(), scene.digest);
     std::size_t inverted = 0;
     for (const auto& mesh : scene.meshes) inverted += mesh.inverted;
     if (inverted > 0)
         text += fmt::format("its meshes have {} inverted tetrahedra; they are kept\n", inverted);
     if (range.flaws().any())
-        text += fmt::format("tetrahedra {}; they {}\n", describe(range.flaws(), scene),
+        text += fmt::format("tetrahedra {}; they {}\n", visible(describe(range.flaws(), scene)),
                             range.flaws().handling == Degenerate::skip ? "take no part"
                                                                        : "take part as flat sets");
     if (range.has_successor())

@@ -107,9 +107,10 @@ void Profiling::print(const Cell& cell, const Measurement& m, const profile::Pro
     const auto frames = static_cast<double>(m.breakdowns.back().frame_ns.size());
     double device = 0;
     for (const auto& kernel : profile.kernels) device += kernel.ns.median;
-    put("\n{}\n{:.4g} us a frame; {:.4g} us in kernels when each is timed alone\n\n{}answer: {}\n",
-        describe(cell), median_ns(m) * 1e-3 / frames, device * 1e-3, profile_table(profile, options_.all),
-        a.frames == 0 ? "not checked" : (a.ok() ? "right" : "WRONG"));
+    put("\n{}\n{:.4g} us a frame; {:.4g} us in kernels when each is timed alone\n\n", describe(cell),
+        median_ns(m) * 1e-3 / frames, device * 1e-3);
+    put_text(profile_table(profile, options_.all));
+    put("answer: {}\n", a.frames == 0 ? "not checked" : (a.ok() ? "right" : "WRONG"));
 }
 
 /// Ends a cell that needs no more rounds, or has failed: prints and records its profile.
@@ -158,7 +159,7 @@ int Profiling::go() {
     const bool interrupted = sample_group(group, check, {run_.repeat, run_.noise, run_.seconds},
                                           run_.seed ? *run_.seed : std::random_device{}(), listener);
     if (traced_ != nullptr && *trace_ && !file_->failed()) trace_->write(trace_frame(*traced_, *job_));
-    if (traced_ != nullptr) put("\n{}", profile::profile_legend());
+    if (traced_ != nullptr) put_text("\n" + profile::profile_legend());
     if (!run_.out.empty()) put("{} records appended to {}\n", file_->appended(), run_.out);
     return interrupted ? 3 : code_;
 }

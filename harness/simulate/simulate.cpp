@@ -202,12 +202,12 @@ int simulate_command(const SimulateOptions& options) {
         run_steps(options, last, simulation, finder, {session, file, totals});
     } catch (const std::exception& error) {
         if (file.failed())
-            put("{}", run_table(totals, true));
+            put_text(run_table(totals, true));
         else
             file.append_or_report(run_record(cell, scene, totals, error.what()));
         throw;
     }
-    put("{}", run_table(totals, !options.record.empty()));
+    put_text(run_table(totals, !options.record.empty()));
     warn_not_converged(totals);
     if (!options.recording.empty())
         put("{}: {} frames; measure them with 'tandem run {}'\n", options.recording, session.frames(),

@@ -24,6 +24,8 @@ class Records:
     """Tables of the same records. Column `cell` of the other tables is the index of `cells`. Times are milliseconds. Launches, waits, bytes,
     pairs and contacts of a cell are sums over its frames.
 
+    Texts are those of the records: unlike `tandem export --csv`, they may begin like formulas and contain control characters.
+
     cells: one row per record of any status, in the order of the files: the columns of `tandem export --csv`, then `file` and `partial`
         (the cell was interrupted before it had enough samples).
         `ms` is the median time of a frame, `ms_low` to `ms_high` its 95 % interval. `stage_NAME_ms` is the time of a stage on the device,

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Formats text for a terminal where each character is one column wide."""
+"""Formats text for a terminal where each character is one column wide, and in pages."""
+import json
+import re
 
 COLUMNS = 100
 
@@ -23,15 +25,33 @@ def paragraph(text, indent):
     return "".join(f"{line}\n" for line in (first, *(" " * indent + line for line in more)))
 
 
-def visible(text):
-    """A text in one line, with control characters as escapes."""
-    names = {"\n": "\\n", "\t": "\\t"}
-    return "".join(names.get(c) or f"\\x{ord(c):02x}" if c < " " or c == "\x7f" else c for c in text)
+# C0, C1, marks of direction (Unicode Bidi_Control), separators of lines and paragraphs, and bytes of C1 that are not UTF-8, as Python reads them.
+_CONTROL = re.compile("[\\x00-\\x1f\\x7f-\\x9f\\u061c\\u200e\\u200f\\u2028-\\u202e\\u2066-\\u2069\\udc80-\\udc9f]")
+_NAMES = {"\n": "\\n", "\t": "\\t"}
+
+
+def _escape(character):
+    code = ord(character)
+    byte = code - 0xdc00 if code >= 0xdc80 else code
+    return _NAMES.get(character) or (f"\\x{byte:02x}" if code < 0x20 or code >= 0xdc80 else f"\\u{code:04x}")
+
+
+def visible(text, kept=""):
+    """A text in one line, with control characters as escapes, as base/text_lines.h has them. Characters in `kept` stay."""
+    return _CONTROL.sub(lambda found: found[0] if found[0] in kept else _escape(found[0]), text)
+
+
+def visible_json(text):
+    """The same of a JSON text: of the characters in its strings, not of their escapes."""
+    def shown(found):
+        character = json.loads(f'"{found[0]}"') if found[0][0] == "\\" else found[0]
+        return json.dumps(visible(character))[1:-1] if _CONTROL.fullmatch(character) else found[0]
+    return re.sub(r"\\u[0-9a-fA-F]{4}|\\.|" + _CONTROL.pattern, shown, text)
 
 
 def one_line(text, length):
     """A text in one line, with control characters as spaces, cut after `length` characters."""
-    text = "".join(" " if character < " " or character == "\x7f" else character for character in text)
+    text = _CONTROL.sub(" ", text)
     return text if len(text) <= length else f"{text[:length]}..."
 
 

@@ -75,7 +75,7 @@ Action read_command_line(int argc, const char* const* argv) {
     if (asks_for_completion(words)) return [app, words] { return complete(*app, words); };
     const auto print = [](const std::string& text) {
         return [text]() -> int {
-            put("{}", text);
+            put_text(text);
             return 0;
         };
     };

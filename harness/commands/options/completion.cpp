@@ -94,7 +94,7 @@ Action add_completion(CLI::App& app) {
         ->required()
         ->check(CLI::IsMember({"bash", "zsh"}));
     return [shell] {
-        put("{}", completion_script(*shell == "bash" ? Shell::bash : Shell::zsh));
+        put_text(completion_script(*shell == "bash" ? Shell::bash : Shell::zsh));
         return 0;
     };
 }

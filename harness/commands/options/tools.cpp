@@ -115,7 +115,8 @@ Action add_export(CLI::App& app) {
         ->needs(contacts);
     const auto* csv =
         app.add_option("--csv", options.csv,
-                       "write records as a CSV table to this file, or to standard output without a file")
+                       "write records as a CSV table to this file, or to standard output without a file; "
+                       "texts like formulas get an apostrophe")
             ->expected(0, 1);
     return [given, csv] {
         given->to_csv = csv->count() > 0;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "harness/record/table/labels.h"
 
+#include "base/text_lines.h"
+
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
@@ -114,6 +116,8 @@ RowLabels row_labels(std::span<const Row> rows) {
                                  + (part.name == "preset" ? "preset " + part.text : part.text);
         }
     }
+    for (auto& label : labels.by_row) label = visible(label);
+    labels.common = visible(labels.common);
     return labels;
 }
 

@@ -10,6 +10,7 @@
 #include "base/error.h"
 
 #include <array>
+#include <fmt/format.h>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -68,7 +69,7 @@ int isolated_command() {
         } catch (const std::exception& error) {
             answer = {{"failure", error.what()}};
         }
-        put("\n{}\n{}", answer.dump(), end_of_answer);
+        put_bytes(fmt::format("\n{}\n{}", answer.dump(), end_of_answer));
         flush_output();
     }
     return 0;

@@ -20,7 +20,7 @@ class Parser(argparse.ArgumentParser):
 
 def warn(message):
     """Prints a warning on standard error."""
-    print(message, file=sys.stderr)
+    print(visible(message), file=sys.stderr)
 
 
 def print_error(problem, code):
@@ -43,9 +43,9 @@ def check_packages(command, names, instead=""):
 
 
 def _print(text):
-    """Writes and flushes a text on standard output. Names of files in it need not be UTF-8."""
+    """Writes and flushes a text of lines on standard output, with control characters as escapes. Names of files in it need not be UTF-8."""
     try:
-        sys.stdout.buffer.write(text.encode(errors="surrogateescape"))
+        sys.stdout.buffer.write(visible(text, "\n\t").encode(errors="surrogateescape"))
         sys.stdout.buffer.flush()
     except OSError as problem:
         # Otherwise Python writes the rest of the buffer again at exit.

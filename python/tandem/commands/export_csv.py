@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: MIT
 """tandem export --csv: writes the records of a file as a table of comma-separated values (RFC 4180). The first line has the names of the
 columns; then each record, of any status, has one line. Columns name the cell and its status, then come times in milliseconds per frame,
-counters and settings. Missing values are empty."""
+counters and settings. Missing values are empty. A text that begins with =, +, -, @, tab or carriage return has an apostrophe before it, so that
+spreadsheets do not take it for a formula; control characters of texts are escapes. Numbers are never changed."""
 import json
 
 from .. import cell_rows, lines
+from ..csv_fields import text_field
 from ..comparison.cells import recorded_cell
 from ..errors import BadUse
 from . import Parser, run, warn
@@ -27,7 +29,7 @@ def _row(record, path, line):
 
 def _text(column, value):
     if value is None or isinstance(value, str):
-        return value or ""
+        return text_field(value or "")
     return f"{value:.9g}" if cell_rows.is_time(column) else json.dumps(value, separators=(",", ":"), sort_keys=True, ensure_ascii=False)
 
 

@@ -4,7 +4,9 @@ Exits with 2 and one error line for bad use and a folder without records, and wi
 import argparse
 import csv
 
+from ..csv_fields import fields
 from ..paper import measuring
+from ..text_lines import visible
 from . import check_packages, print_error
 
 PACKAGES = ("matplotlib", "pandas", "scipy")
@@ -33,7 +35,7 @@ def write_claims(path, found):
     with open(path / "claims.csv", "w", newline="") as file:
         writer = csv.DictWriter(file, CLAIM_COLUMNS, lineterminator="\n")
         writer.writeheader()
-        writer.writerows({name: short(row.get(name)) for name in CLAIM_COLUMNS} for claim in found for row in claim_rows(claim))
+        writer.writerows(fields({name: short(row.get(name)) for name in CLAIM_COLUMNS}) for claim in found for row in claim_rows(claim))
 
 
 def all_tables(folder):
@@ -65,7 +67,7 @@ def draw(path):
     """Makes all files and prints their numbers or an error. Returns the exit code."""
     from .. import lines
     try:
-        print(build(path), flush=True)
+        print(visible(build(path)), flush=True)
     except lines.RecordError as error:
         return print_error(error, 2)
     except OSError as error:

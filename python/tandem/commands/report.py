@@ -3,10 +3,9 @@
 import argparse
 import datetime
 import subprocess
-import sys
 
 from ..errors import BadUse
-from . import check_packages, run
+from . import check_packages, run, warn
 
 MAX_BYTES = 7_900_000
 
@@ -71,9 +70,11 @@ def _write(options, program):
     page.data["records"] = data.json
     written = write_page(options.output, page)
     for note in data.notes:
-        print(f"tandem: {note}", file=sys.stderr)
-    sentences = "".join(f"{one}\n" for one in data.sentences) if options.sentences else ""
-    return f"{sentences}{options.output}: {_contents(data.cells, records, len(options.files))}{scene}, {written / 1e6:.1f} MB\n"
+        warn(f"tandem: {note}")
+    sentences = "".join(f"{one}
+" for one in data.sentences) if options.sentences else ""
+    return f"{sentences}{options.output}: {_contents(data.cells, records, len(options.files))}{scene}, {written / 1e6:.1f} MB
+"
 
 
 def _make(options, program):

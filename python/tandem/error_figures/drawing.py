@@ -5,6 +5,7 @@ import csv
 import matplotlib
 import matplotlib.pyplot as plt
 
+from ..csv_fields import fields
 from . import bars, cliffs, pareto
 from .points import swept
 
@@ -19,7 +20,7 @@ def _write_data(path, points):
     with open(path, "w", newline="") as file:
         writer = csv.DictWriter(file, [*first, *settings, *last], extrasaction="ignore", restval="")
         writer.writeheader()
-        writer.writerows(p.row() for p in points)
+        writer.writerows(fields(p.row()) for p in points)
 
 
 def _save(folder, name, drawn):

@@ -12,6 +12,7 @@ matplotlib.rcParams.update({"svg.hashsalt": "tandem", "svg.fonttype": "none", "s
 import matplotlib.pyplot as plt
 from matplotlib import ticker
 
+from ..csv_fields import fields
 from ..plots import COLOURS, INK, PALE, WINNER
 from .tables import short
 
@@ -54,7 +55,7 @@ def write_rows(folder, number, rows):
     with open(folder / f"figure{number}.csv", "w", newline="") as file:
         writer = csv.DictWriter(file, columns, lineterminator="\n")
         writer.writeheader()
-        writer.writerows([{name: short(row.get(name)) for name in columns} for row in rows])
+        writer.writerows([fields({name: short(row.get(name)) for name in columns}) for row in rows])
 
 
 def missing(folder, number, title, why):

@@ -2,6 +2,7 @@
 """Writes index.html with the answer, the verdicts, figures and tables of a folder."""
 from html import escape
 
+from ..text_lines import visible
 from . import headline
 from .methods import FOUR
 from .rules import AGREES, DIFFERS, NOT_SETTLED
@@ -171,4 +172,4 @@ def write(folder, tables, figures, claims):
 {steps_html(folder)}
 </body></html>
 """
-    (folder.path / "index.html").write_text(page)
+    (folder.path / "index.html").write_text(visible(page, "\n"))

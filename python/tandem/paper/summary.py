@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Writes verdicts.md, the answer and one row for each claim, for readers of a folder of results without a browser."""
 from .. import markdown
+from ..text_lines import visible
 from . import headline
 from .rules import UNTESTED
 from .tables import written
@@ -29,4 +30,4 @@ def write(folder, claims):
     text = ["# The paper's claims and our records", "", "For those who look for one claim. `tandem paper` writes this page. [index.html](index.html) has intervals and records.", ""]
     text += [sentence + "\n" for sentence in headline.sentences(folder, claims)]
     text += [markdown.table(["the paper states", "where", "verdict", "ours"], rows)]
-    (folder.path / "verdicts.md").write_text("\n".join(text).rstrip() + "\n")
+    (folder.path / "verdicts.md").write_text(visible("\n".join(text).rstrip() + "\n", "\n"))

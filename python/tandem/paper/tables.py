@@ -5,6 +5,7 @@ import dataclasses
 import math
 import statistics
 
+from ..csv_fields import fields
 from .folder import SCENES, number, paper_table
 
 
@@ -24,7 +25,7 @@ class Table:
         with open(folder / f"table{self.number}.csv", "w", newline="") as file:
             writer = csv.DictWriter(file, self.columns, lineterminator="\n")
             writer.writeheader()
-            writer.writerows([{name: short(row.get(name)) for name in self.columns} for row in self.rows])
+            writer.writerows([fields({name: short(row.get(name)) for name in self.columns}) for row in self.rows])
 
 
 def short(value):

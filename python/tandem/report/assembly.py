@@ -7,6 +7,7 @@ import stat
 
 from ..errors import OutputError
 from ..files import replace_whole
+from ..text_lines import visible, visible_json
 from .libraries import CHARTS, SCENES, scripts
 
 FOLDER = pathlib.Path(__file__).parent / "page"
@@ -35,12 +36,12 @@ def _own(name):
 
 
 def _escaped(text):
-    return text.replace("&", "&amp;").replace("<", "&lt;")
+    return visible(text).replace("&", "&amp;").replace("<", "&lt;")
 
 
 def _data_element(name, json):
-    """An element with JSON data, escaped so that no text of a record can end it."""
-    escaped = json.replace("<", "\\u003c")
+    """An element with JSON data, escaped so that no text of a record can end it or contain control characters."""
+    escaped = visible_json(json).replace("<", "\\u003c")
     return f'<script type="application/json" id="data-{name}">{escaped}</script>\n'
 
 
