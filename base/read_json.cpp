@@ -2,6 +2,7 @@
 #include "base/read_json.h"
 
 #include "base/error.h"
+#include "base/files_in_use.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -48,6 +49,7 @@ std::string text_of(const std::string& path, std::string_view what) {
     std::ifstream file(path, std::ios::binary);
     if (!file || std::filesystem::is_directory(path))
         throw InputError(fmt::format("{}: cannot be read; name an existing {}", path, what));
+    note_input(path);
     std::string text;
     std::vector<char> part(std::size_t{1} << 16);
     while (file.read(part.data(), static_cast<std::streamsize>(part.size())) || file.gcount() > 0) {

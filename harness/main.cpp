@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "harness/commands/options/command_line.h"
+#include "base/files_in_use.h"
 #include "base/memory_reserve.h"
 #include "harness/sampling/ranks/mpi_environment.h"
 #include "harness/sampling/ranks/run_on_ranks.h"
@@ -38,6 +39,7 @@ int run(int argc, char** argv) {
     const auto read = [=] { return tandem::read_command_line(argc, argv); };
     return guarded([&] {
         const tandem::MemoryReserve reserve;
+        const tandem::FilesInUse files;
         const tandem::MpiEnvironment mpi_environment;
         auto* ranks = tandem::job_ranks();
         if (ranks == nullptr) return guarded([&] { return read()(); });

@@ -2,11 +2,14 @@
 #include "harness/commands/dumps.h"
 
 #include "base/error.h"
+#include "base/files_in_use.h"
 
 #include <cerrno>
 #include <cstring>
 #include <fmt/format.h>
 #include <iterator>
+#include <sys/stat.h>
+#include <unistd.h>
 
 namespace tandem {
 
@@ -19,15 +22,26 @@ constexpr std::size_t piece_bytes = 1 << 20;
 
 DumpFile::DumpFile(const std::string& path, std::string_view header) : path_(path) {
     if (path.empty()) return;
-    file_.reset(std::fopen(path.c_str(), "w"));
+    file_.reset(std::fopen(path.c_str(), "a")); // keeps the content until it may be overwritten
     if (!file_)
         throw InputError(
             fmt::format("{}: cannot be written ({}); choose another file", path, std::strerror(errno)));
+    refuse_overwriting(fileno(file_.get()), path);
+    note_output(path);
     try {
+        clear();
         write(header);
     } catch (const OutputError& error) { // nothing is measured yet
         throw InputError(fmt::format("{}; choose another file", error.what()));
     }
+}
+
+/// A pipe or a terminal has nothing to clear.
+void DumpFile::clear() const {
+    struct stat facts {};
+    const int descriptor = fileno(file_.get());
+    if (fstat(descriptor, &facts) == 0 && S_ISREG(facts.st_mode) && ftruncate(descriptor, 0) != 0)
+        throw OutputError(fmt::format("{}: cannot be emptied ({})", path_, std::strerror(errno)));
 }
 
 void DumpFile::write(std::string_view text) const {

@@ -10,7 +10,7 @@
 namespace tandem {
 
 /// A CSV file of pairs, contacts or chunks. The constructor opens it, before anything is measured, and throws
-/// InputError.
+/// InputError, also for an input and a file of records, which stay as they are.
 class DumpFile {
 public:
     /// With an empty path nothing is written.
@@ -30,6 +30,7 @@ private:
     struct Close {
         void operator()(std::FILE* file) const { std::fclose(file); }
     };
+    void clear() const;
     void write(std::string_view text) const;
     void write_pieces(std::string& text, std::size_t least) const;
 

@@ -11,10 +11,12 @@
 #include "base/memory_reserve.h"
 #include "base/standard_streams.h"
 #include "base/error.h"
+#include "base/files_in_use.h"
 #include "scenes/export/geometry.h"
 #include "scenes/export/glb.h"
 #include "scenes/export/vtk.h"
 
+#include <cstdlib>
 #include <filesystem>
 #include <fmt/format.h>
 #include <optional>
@@ -50,11 +52,13 @@ void make_folder(const std::string& folder) {
                                      error ? error.message() : "a file has this name"));
 }
 
+std::string bodies_file(std::size_t frame) { return fmt::format("bodies_{:06}.vtu", frame); }
+std::string contacts_file(std::size_t frame) { return fmt::format("contacts_{:06}.vtp", frame); }
+
 std::size_t export_vtu(const ExportOptions& options, const Scene& scene,
                        std::span<const std::size_t> frames) {
     std::optional<FrameContacts> finder;
     if (options.contacts) finder.emplace(options.device, scene);
-    make_folder(options.vtu);
     const auto chunks = chunks_of(scene);
     std::vector<TimedFile> bodies, contacts;
     std::size_t found = 0;
@@ -62,17 +66,33 @@ std::size_t export_vtu(const ExportOptions& options, const Scene& scene,
         MemoryReserve::refill();
         const auto frame = scene.frame(i);
         const double time = scene.time ? scene.time(i) : static_cast<double>(i);
-        bodies.push_back({time, fmt::format("bodies_{:06}.vtu", i)});
+        bodies.push_back({time, bodies_file(i)});
         write_vtu(options.vtu + "/" + bodies.back().file, scene, frame, {&chunks, 1});
         if (!finder) continue;
         const auto points = finder->find(frame);
         found += points.size();
-        contacts.push_back({time, fmt::format("contacts_{:06}.vtp", i)});
+        contacts.push_back({time, contacts_file(i)});
         write_contacts_vtp(options.vtu + "/" + contacts.back().file, points);
     }
     write_pvd(options.vtu + "/bodies.pvd", bodies);
     if (finder) write_pvd(options.vtu + "/contacts.pvd", contacts);
     return found;
+}
+
+/// Refuses, before any work, outputs that would overwrite an input or a file of records. TANDEM_PAGE names
+/// the page that `tandem view` and `tandem report` make of the geometry.
+void check_outputs(const ExportOptions& options, std::span<const std::size_t> frames) {
+    for (const auto& path : {options.chunks, options.glb, options.geometry})
+        if (!path.empty()) check_output(path);
+    if (const char* page = std::getenv("TANDEM_PAGE"); page != nullptr && !options.geometry.empty())
+        check_output(page);
+    if (options.vtu.empty()) return;
+    make_folder(options.vtu);
+    for (const auto* name : {"bodies.pvd", "contacts.pvd"}) check_output(options.vtu + "/" + name);
+    for (const auto i : frames) {
+        check_output(options.vtu + "/" + bodies_file(i));
+        if (options.contacts) check_output(options.vtu + "/" + contacts_file(i));
+    }
 }
 
 void export_geometry(const ExportOptions& options, const Scene& scene, std::span<const std::size_t> frames) {
@@ -144,6 +164,7 @@ int export_command(const ExportOptions& options) {
     const auto [first, last] = named_frames(options.frames, scene);
     std::vector<std::size_t> frames;
     for (auto i = first; i <= last; i += options.every) frames.push_back(i);
+    check_outputs(options, frames);
     if (!options.chunks.empty()) export_chunks(options, scene);
     const auto summary = fmt::format("{} of frames {}:{} of {}", frames.size(), first, last, scene.key);
     if (!options.glb.empty()) {

@@ -5,6 +5,7 @@
 #include "harness/record/torn_line.h"
 #include "base/durable.h"
 #include "base/error.h"
+#include "base/files_in_use.h"
 
 #include <array>
 #include <cerrno>
@@ -63,6 +64,7 @@ int duplicate(int descriptor) {
 /// Regular files are also opened for reading, because repairs read the last line. A pipe is opened for
 /// writing only: opened for both, it would not wait for a reader.
 int open_for_appending(const std::string& path, Links links) {
+    if (links == Links::followed) check_name(path + ".unfinished.rest"); // the longest name beside it
     if (links == Links::refused)
         return open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_NOFOLLOW | O_CLOEXEC, 0644);
     if (const int descriptor = descriptor_named(path); descriptor >= 0) return duplicate(descriptor);
@@ -116,6 +118,8 @@ RecordFile::RecordFile(const std::string& path, Links links)
     if (path.empty() || !is_repairable_) return;
     const AppendLock lock(file_);
     try {
+        refuse_appending(file_, path_);
+        if (links == Links::followed) note_output(path_);
         if (size_of(file_, path_) == 0) sync_folder_of(path_); // the file may be new
         check_first_line(file_, path_);
         repair_last_line(file_, path_);

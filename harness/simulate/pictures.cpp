@@ -6,6 +6,7 @@
 #include "harness/commands/programs.h"
 #include "base/standard_streams.h"
 #include "base/error.h"
+#include "base/files_in_use.h"
 #include "scenes/export/glb.h"
 #include "scenes/recording/recording.h"
 
@@ -27,6 +28,7 @@ Pictures::Pictures(std::string out)
     if (!folder.empty()) fs::create_directories(folder, code);
     if (code)
         throw InputError(fmt::format("--pictures: cannot make {}: {}", folder.string(), code.message()));
+    for (const int number : {0, 1, 2}) check_output(fmt::format("{}-{}.png", out_, number));
 }
 
 void Pictures::draw(const std::string& recording) const {

@@ -1,11 +1,59 @@
 # SPDX-License-Identifier: MIT
-"""Atomic replacement of files."""
+"""Checks of outputs, and atomic replacement of files."""
 import errno
 import fcntl
 import os
 import stat
 
-from .errors import OutputError
+from .errors import BadUse, OutputError
+
+_STARTS = (b'"schema":', b'"schema" :')
+
+
+def _has_records(path):
+    """Whether a file begins as a line of records does, or is compressed by xz, as older records are."""
+    with open(path, "rb") as file:
+        start = file.read(1 << 16)
+    line = start.split(b"\n", 1)[0]
+    return start.startswith(b"\xfd7zXZ") or (line.startswith(b"{") and any(word in line for word in _STARTS))
+
+
+def _is_same(path, other):
+    try:
+        return os.path.samefile(path, other)
+    except OSError:
+        return False
+
+
+def _check_existing(path, inputs):
+    if any(_is_same(path, one) for one in inputs):
+        raise BadUse(f"{path}: is an input of this command; choose another file for the output")
+    if not os.access(path, os.W_OK):
+        raise BadUse(f"{path}: cannot be written ({os.strerror(errno.EACCES)}); choose another file")
+    if _has_records(path):
+        raise BadUse(f"{path}: is a file of records, which are never overwritten; choose another file for the output")
+
+
+def check_output(path, inputs=(), suffix=""):
+    """Call this before any work. Raises BadUse for an output that is one of the inputs or a file of records, compared by device and inode, and
+    for one that cannot be written, such as a folder. `suffix`: that of a file which is made beside it."""
+    path = os.fspath(path)
+    for name in (path + suffix, path):
+        try:
+            mode = os.stat(name).st_mode
+        except FileNotFoundError:
+            mode = 0
+        except OSError as problem:
+            raise BadUse(f"{path}: cannot be written ({problem.strerror}); choose another file") from None
+    if stat.S_ISREG(mode):
+        return _check_existing(path, inputs)
+    if stat.S_ISDIR(mode):
+        raise BadUse(f"{path}: is a folder; name a file for the output")
+    folder = os.path.dirname(path) or "."
+    if mode == 0 and not os.access(folder, os.W_OK | os.X_OK):
+        raise BadUse(f"{path}: cannot be written ({os.strerror(errno.EACCES if os.path.exists(folder) else errno.ENOENT)}); choose another file")
+    return None
+
 
 
 def _sync_folder(path):

@@ -2,6 +2,7 @@
 #include "scenes/read/read.h"
 
 #include "base/error.h"
+#include "base/files_in_use.h"
 #include "scenes/read/formats.h"
 #include "scenes/read/scanner.h"
 
@@ -73,6 +74,7 @@ std::string load(const fs::path& path) {
     std::ifstream file(path, std::ios::binary | std::ios::ate);
     if (!file) throw InputError(fmt::format("{}: {}; check the path", path.string(), std::strerror(errno)));
     std::string bytes(static_cast<std::size_t>(std::max<std::streamoff>(file.tellg(), 0)), '\0');
+    note_input(path.string());
     file.seekg(0);
     if (!file.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
         throw InputError(fmt::format("{}: cannot be read; name a regular file", path.string()));

@@ -3,6 +3,7 @@
 
 #include "base/durable.h"
 #include "base/error.h"
+#include "base/files_in_use.h"
 
 #include <cerrno>
 #include <cstring>
@@ -59,13 +60,24 @@ File::File(const std::string& path, Mode mode) : path_(path), descriptor_(-1) {
     struct stat status {};
     if (fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode)
         && (mode == Mode::read || flock(descriptor_, LOCK_EX | LOCK_NB) == 0)) {
-        if (mode == Mode::replace) truncate(0);
+        if (mode == Mode::replace) replace_content();
         return;
     }
     close(std::exchange(descriptor_, -1));
     throw InputError(fmt::format("{}: {}", path,
                                  S_ISREG(status.st_mode) ? "another process writes it; wait for its end"
                                                          : "is not a regular file; choose another"));
+}
+
+/// Nothing has been lost when this throws: the old content is still there.
+void File::replace_content() {
+    try {
+        refuse_overwriting(descriptor_, path_);
+        truncate(0);
+    } catch (...) {
+        close(std::exchange(descriptor_, -1));
+        throw;
+    }
 }
 
 File::~File() {
@@ -124,6 +136,7 @@ std::string read_whole(const std::string& path) {
 }
 
 void replace_whole(const std::string& path, std::string_view bytes) {
+    check_output(path);
     const auto partial = path + ".partial";
     File file = make_partial(partial);
     file.write(0, bytes);

@@ -12,8 +12,8 @@ namespace tandem::recording {
 class File {
 public:
     /// read: an existing file. create: a new file, which must not exist. update: an existing file, to read
-    /// and write. replace: an existing or new file, which is truncated. All but read lock the file until the
-    /// process ends.
+    /// and write. replace: an existing or new file, which is truncated unless it is an input or a file of
+    /// records (base/files_in_use.h). All but read lock the file until the process ends.
     enum class Mode { read, create, update, replace };
 
     File(const std::string& path, Mode mode);
@@ -36,6 +36,7 @@ public:
     void sync();
 
 private:
+    void replace_content();
     [[noreturn]] void fail(std::string_view what) const;
     [[noreturn]] void fail_writing(std::string_view what) const;
 
@@ -47,8 +48,8 @@ private:
 std::string read_whole(const std::string& path);
 
 /// Replaces the content of `path` atomically: a crash leaves the complete old or new content. Writes and
-/// syncs the new file PATH.partial, which must not be a link, then renames it. Throws InputError when that
-/// file cannot be created, OutputError when it cannot be written.
+/// syncs the new file PATH.partial, which must not be a link, then renames it. Throws InputError for an input
+/// and a file of records, and when that file cannot be created, OutputError when it cannot be written.
 void replace_whole(const std::string& path, std::string_view bytes);
 
 /// Deletes a file if it exists.

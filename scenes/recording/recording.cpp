@@ -2,6 +2,7 @@
 #include "scenes/recording/recording.h"
 
 #include "base/error.h"
+#include "base/files_in_use.h"
 #include "scenes/read/cursor.h"
 
 #include <cmath>
@@ -11,6 +12,7 @@ namespace tandem {
 
 /// Frames have equal sizes, so that the file's size gives their number. A remainder is a truncated frame.
 Recording::Recording(const std::string& path) : file_(path, recording::File::Mode::read) {
+    note_input(path);
     std::tie(header_, header_bytes_) = recording::read_header(file_);
     frame_bytes_ = recording::frame_bytes(header_);
     const auto rest = file_.size() - header_bytes_;

@@ -3,6 +3,7 @@
 
 #include "base/durable.h"
 #include "base/error.h"
+#include "base/files_in_use.h"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -51,6 +52,7 @@ RecordingWriter::RecordingWriter(recording::File file, const RecordingHeader& he
       frame_bytes_(recording::frame_bytes(header)) {}
 
 RecordingWriter RecordingWriter::create(const std::string& path, const RecordingHeader& header) {
+    check_name(checkpoint_path(path) + ".partial");
     RecordingWriter writer(recording::File(path, recording::File::Mode::create), header);
     // The checkpoint of an earlier recording at this path must not be resumed with the new one.
     recording::remove_if_exists(checkpoint_path(path));

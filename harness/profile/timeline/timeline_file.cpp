@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/profile/timeline/timeline.h"
 #include "base/error.h"
+#include "base/files_in_use.h"
 
 #include <cerrno>
 #include <cstring>
@@ -23,6 +24,7 @@ TimelineFile::TimelineFile(const std::string& path) : path_(path) {
     if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))
         throw InputError(fmt::format("{}: is no regular file; choose another file for the timeline", path));
     temporary_ = fmt::format("{}.{}", path, getpid());
+    check_output(path);
     file_ = std::fopen(temporary_.c_str(), "wx");
     if (file_ == nullptr)
         throw InputError(fmt::format("{}: cannot be written ({}); choose another file", path, reason()));

@@ -9,6 +9,7 @@ from .. import cell_rows, lines
 from ..csv_fields import text_field
 from ..comparison.cells import recorded_cell
 from ..errors import BadUse
+from ..files import check_output
 from . import Parser, run, warn
 
 
@@ -58,6 +59,8 @@ def _write(path, text):
 
 def _make(arguments):
     options = _parsed(arguments)
+    if options.output:
+        check_output(options.output, [options.records])
     rows = [_row(record, options.records, line) for line, record in lines.numbered(options.records, warn)]
     if not rows:
         raise lines.RecordError(f"{options.records}: has no record; name a file of records")

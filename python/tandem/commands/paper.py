@@ -5,6 +5,8 @@ import argparse
 import csv
 
 from ..csv_fields import fields
+from ..errors import BadUse
+from ..files import check_output
 from ..paper import measuring
 from ..text_lines import visible
 from . import check_packages, print_error
@@ -49,6 +51,8 @@ def build(path):
     from ..paper import claims, figures, page, pictures, simulation_figures, summary
     from ..paper.folder import Folder
     folder = Folder(path)
+    for output in (*folder.path.glob("*.csv"), *folder.path.glob("*.svg"), folder.path / "index.html", folder.path / "verdicts.md"):
+        check_output(output)
     made = all_tables(folder)
     for table in made:
         table.write(folder.path)
@@ -68,7 +72,7 @@ def draw(path):
     from .. import lines
     try:
         print(visible(build(path)), flush=True)
-    except lines.RecordError as error:
+    except (lines.RecordError, BadUse) as error:
         return print_error(error, 2)
     except OSError as error:
         return print_error(f"{error.filename or path}: cannot be written: {error.strerror}", 3)

@@ -5,6 +5,7 @@ import datetime
 import subprocess
 
 from ..errors import BadUse
+from ..files import check_output
 from . import check_packages, run, warn
 
 MAX_BYTES = 7_900_000
@@ -46,7 +47,7 @@ def _add_scene(page, options, program):
     from ..report.scene import shown_scene, words_of
     if not options.scene:
         return ""
-    scene = shown_scene(program, words_of(options.scene, options))
+    scene = shown_scene(program, words_of(options.scene, options), options.output)
     page.data["scene"] = scene.json
     return f", {scene.key}"
 
@@ -56,6 +57,7 @@ def _write(options, program):
     from ..report.assembly import html_of, open_page, write_page
     if options.against and len(options.files) != 1:
         raise BadUse(f"--against {options.against}: two sets of records are compared; give one FILE beside it")
+    check_output(options.output, [*options.files, *filter(None, (options.against, options.scene))], ".partial")
     page = open_page("Report of tandem", True, bool(options.scene), program, "tandem report")
     check_packages("tandem report", ("numpy", "scipy"))
     from ..report.data import data_of, size_of

@@ -3,6 +3,7 @@
 import argparse
 import re
 
+from ..files import check_output
 from ..report.assembly import open_page, write_page
 from ..report.scene import ExportEnded, shown_scene, words_of
 from . import run
@@ -25,13 +26,16 @@ def _file_name(scene):
 
 
 def _make(options, program):
+    if options.output:
+        check_output(options.output, [*filter(None, (options.scene,)), *(options.mesh or ())], ".partial")
     page = open_page("", False, True, program, "tandem view")
     try:
-        scene = shown_scene(program, words_of(options.scene, options))
+        scene = shown_scene(program, words_of(options.scene, options), options.output)
     except ExportEnded as ended:
         return "", ended.code
     page.title, page.data["scene"] = f"{scene.name}, a scene of tandem", scene.json
     path = options.output or _file_name(scene.name)
+    check_output(path, (), ".partial")
     written = write_page(path, page)
     return f"{path}: {scene.frames} {'frame' if scene.frames == 1 else 'frames'} of {scene.key}, {written / 1e6:.1f} MB\n", 0
 

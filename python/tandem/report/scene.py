@@ -2,6 +2,7 @@
 """Gets the geometry of a scene by the program's export."""
 import dataclasses
 import json
+import os
 import pathlib
 import signal
 import subprocess
@@ -52,9 +53,9 @@ class _SignalForwarder:
         if self.process is not None:
             self.process.terminate()
 
-    def run(self, words):
-        """Runs a program. Returns its exit code, or 128 plus its signal. Discards its standard output."""
-        self.process = subprocess.Popen(words, stdout=subprocess.DEVNULL)
+    def run(self, words, page):
+        """Runs a program, with the page's file in its environment. Returns its exit code, or 128 plus its signal. Discards its standard output."""
+        self.process = subprocess.Popen(words, stdout=subprocess.DEVNULL, env=os.environ | ({"TANDEM_PAGE": page} if page else {}))
         if self.signalled:
             self.process.terminate()
         code = self.process.wait()
@@ -71,8 +72,8 @@ def words_of(scene, options):
     return [*words, *(["--contacts"] if options.contacts else []), *(["--", scene] if scene else [])]
 
 
-def _exported(forwarder, program, words, path):
-    code = forwarder.run([program, "export", f"--geometry={path}", *words])
+def _exported(forwarder, program, words, path, page):
+    code = forwarder.run([program, "export", f"--geometry={path}", *words], page)
     if code > 128 and not forwarder.signalled:
         raise OutputError(f"tandem export was ended by signal {code - 128}")
     if code != 0:
@@ -87,11 +88,11 @@ def _temporary_folder():
         raise BadUse(f"no folder for temporary files ({problem.strerror}); set TMPDIR to one") from None
 
 
-def shown_scene(program, words):
-    """ShownScene of an export with the arguments `words`. Raises ExportEnded, BadUse and OutputError."""
+def shown_scene(program, words, page=None):
+    """ShownScene of an export with the arguments `words`. `page`: the file of the page, which the program refuses if it is an input. Raises ExportEnded, BadUse and OutputError."""
     with _SignalForwarder() as forwarder: # for as long as the folder exists: a signal never leaves it behind
         with _temporary_folder() as folder:
-            text = _exported(forwarder, program, words, pathlib.Path(folder) / "scene.json")
+            text = _exported(forwarder, program, words, pathlib.Path(folder) / "scene.json", page)
         if forwarder.signalled:
             raise ExportEnded(128 + signal.SIGTERM)
     scene = json.loads(text)
