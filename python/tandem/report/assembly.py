@@ -11,7 +11,7 @@ from ..text_lines import visible, visible_json
 from .libraries import CHARTS, SCENES, scripts
 
 FOLDER = pathlib.Path(__file__).parent / "page"
-CHART_SCRIPTS = ("words.js", "tables.js", "axes.js", "charts.js", "figures.js", "stages.js", "sweeps.js", "errors.js", "kernels.js")
+CHART_SCRIPTS = ("words.js", "tables.js", "axes.js", "charts.js", "figures.js", "history.js", "stages.js", "sweeps.js", "errors.js", "kernels.js")
 SCENE_SCRIPTS = ("contacts.js", "scene.js", "scene_controls.js")
 
 

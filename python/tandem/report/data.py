@@ -4,6 +4,7 @@ import dataclasses
 import json
 
 from .groups import groups_of
+from .history import shown_history
 from .leads import title, which_text
 from .numbers import rounded
 from .sentences import group_sentences, named_cells, summary_sentences
@@ -97,10 +98,11 @@ def _cell_data(records, values, max_bytes):
     for group in groups:
         for number, label in zip(group.cells, group.labels):
             cells[number].row.append(label)
+    history, moves = shown_history(cells)
     made = {"fields": list(FIELDS), "shared": [name for name, is_shared in FIELDS.items() if is_shared], "values": values.values,
-            "words": summary_sentences(groups, cells), "groups": [_group(group, cells) for group in groups],
+            "history": history, "words": [*summary_sentences(groups, cells), *moves], "groups": [_group(group, cells) for group in groups],
             "sweeps": sweeps_of(cells, records.verdicts), "cells": [cell.row for cell in cells], "older": [number for number, cell in enumerate(cells) if cell.is_older]}
-    used = sum(size_of(dumped(made[name])) for name in ("cells", "groups", "sweeps")) + values.bytes
+    used = sum(size_of(dumped(made[name])) for name in ("cells", "groups", "sweeps", "history")) + values.bytes
     details = _Details(max(max_bytes - used, 0))
     made |= {"curves": details.fitting([cell.curve for cell in cells]), "rounds": details.fitting([cell.rounds for cell in cells])}
     if details.missing:

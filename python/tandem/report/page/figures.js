@@ -79,7 +79,7 @@ tandem.differencesFigure = differences => differences && new tandem.Figure({id: 
 }});
 
 tandem.charts = (data, differences) => {
-  for (const figure of [tandem.differencesFigure(differences), tandem.mediansFigure(data), tandem.sweepsFigure(data), tandem.stagesFigure(data), tandem.curvesFigure(data),
+  for (const figure of [tandem.differencesFigure(differences), tandem.historyFigure(data), tandem.mediansFigure(data), tandem.sweepsFigure(data), tandem.stagesFigure(data), tandem.curvesFigure(data),
     tandem.errorFigure(data), tandem.rooflineFigure(data), tandem.simulationsFigure(data)])
     if (figure) figure.show();
 };

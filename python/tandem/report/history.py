@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: MIT
+"""The history of cells that several programs recorded: the trend of each, and the commit where its time moved, by the rule of 'tandem compare'."""
+import dataclasses
+import statistics
+
+from ..comparison.matching import CHANGES, VERDICTS, match
+from ..comparison.naming import label
+from ..comparison.pooling import counting, pooled
+from .numbers import digits, rounded
+from .shown_cells import FIELDS
+
+LEVEL = 0.05  # probability of any false move in a page
+MAX_KEYS, MAX_NAMED = 500, 3
+DATE = list(FIELDS).index("date")
+
+
+@dataclasses.dataclass
+class Point:
+    """The records of one cell by one program, its sessions pooled. compared: the matching.ComparedCell with the cell since which the time has
+    not moved; None for the first point."""
+    program: int
+    cell: object
+    compared: object = None
+
+    @property
+    def moved(self):
+        return self.compared is not None and self.compared.verdict in CHANGES
+
+    @property
+    def ms(self):
+        """Milliseconds a frame: the median of rounds, or of sessions."""
+        return statistics.median(self.cell.times()) / self.cell.frames / 1e6
+
+
+@dataclasses.dataclass
+class History:
+    """programs: texts of commits, the oldest first. points: {key: Points in this order}, of the keys that several programs recorded.
+    numbers: {key: number of its newest cell on the page}. left_out: number of keys beyond MAX_KEYS."""
+    programs: list
+    points: dict
+    numbers: dict
+    left_out: int = 0
+
+
+@dataclasses.dataclass
+class _Side:
+    cells: list
+
+
+def _program(recorded):
+    return recorded.commit, recorded.dirty, recorded.sources
+
+
+def _ordered(cells):
+    """The programs of these cells by the date of their first record; in the order of the records if one has no date."""
+    dates = {}
+    for cell in cells:
+        dates.setdefault(_program(cell.recorded), []).append(cell.row[DATE] or "")
+    first = {program: min(found) for program, found in dates.items()}
+    return sorted(first, key=first.get) if all(first.values()) else list(first)
+
+
+def _texts(programs):
+    """Commits of seven digits. A program with uncommitted changes says so, and programs of equal texts are numbered."""
+    texts, seen = [], {}
+    for commit, dirty, _ in programs:
+        text = (commit[:7] or "unknown") + (" with changes" if dirty else "")
+        seen[text] = seen.get(text, 0) + 1
+        texts.append(text if seen[text] == 1 else f"{text} #{seen[text]}")
+    return texts
+
+
+def _pooled(cells):
+    counted = counting(cells)
+    return pooled(counted) if len(counted) > 1 else counted[0]
+
+
+def _find_moves(points, programs):
+    """Compares each program's cells with those since which their times have not moved. Steps share LEVEL equally, and cells of a step by Holm's
+    correction, so that LEVEL is that of the page."""
+    base = {}
+    for number in range(programs):
+        here = {key: point for key, all_points in points.items() for point in all_points if point.program == number}
+        known = [key for key in here if key in base]
+        if known:
+            matched = match(_Side([base[key] for key in known]), _Side([here[key].cell for key in known]), level=LEVEL / (programs - 1))
+            for key, compared in zip(known, matched.cells):
+                here[key].compared = compared
+        base |= {key: point.cell for key, point in here.items() if key not in base or point.moved}
+
+
+def history_of(cells):
+    """History of ShownCells; None if no cell has records of two programs."""
+    good = [(number, cell) for number, cell in enumerate(cells) if cell.recorded.status == "ok" and cell.recorded.rounds]
+    programs = _ordered([cell for _, cell in good])
+    by_key, numbers = {}, {}
+    for number, cell in good:
+        by_key.setdefault(cell.recorded.key, {}).setdefault(programs.index(_program(cell.recorded)), []).append(cell.recorded)
+        if not cell.is_older:
+            numbers[cell.recorded.key] = number
+    several = {key: found for key, found in by_key.items() if len(found) > 1}
+    if not several:
+        return None
+    shown = dict(list(several.items())[:MAX_KEYS])
+    points = {key: [Point(program, _pooled(found[program])) for program in sorted(found)] for key, found in shown.items()}
+    _find_moves(points, len(programs))
+    return History(_texts(programs), points, numbers, len(several) - len(shown))
+
+
+def _change(point):
+    """What a move is: "takes 1.2 times as long [1.1, 1.3]"."""
+    compared = point.compared
+    if compared.verdict == "another_answer":
+        return "has another answer"
+    ratio = compared.ratio
+    return f"takes {digits(ratio.value)} times as long [{digits(ratio.low)}, {digits(ratio.high)}]"
+
+
+def _title(name, points, programs):
+    moves = [f"{_change(point)} since {programs[point.program]}" for point in points if point.moved]
+    return f"{name} {', then '.join(moves)}" if moves else f"{name} did not move over {len(points)} commits"
+
+
+def _point(point):
+    compared, row = point.compared, [point.program, rounded(point.ms), point.cell.all_rounds, point.cell.sessions or 1]
+    if compared is None:
+        return [*row, None, None, ""]
+    ratio = compared.ratio
+    return [*row, ratio and [rounded(value) for value in (ratio.value, ratio.low, ratio.high)], point.moved, VERDICTS[compared.verdict]]
+
+
+def shown_history(cells):
+    """The History of ShownCells as JSON values, and its sentences; None and no sentence if no cell has records of two programs."""
+    found = history_of(cells)
+    if found is None:
+        return None, []
+    labels = dict(zip(found.points, label([points[-1].cell for points in found.points.values()])[0]))
+    titles = {key: _title(labels[key], points, found.programs) for key, points in found.points.items()}
+    moved = [key for key, points in found.points.items() if any(point.moved for point in points)]
+    keys = [*moved, *(key for key in found.points if key not in moved)]
+    named = "".join(f" {titles[key]}." for key in moved[:MAX_NAMED]) + (" The chart has the others." if len(moved) > MAX_NAMED else "")
+    sentence = f"Over {len(found.programs)} commits, {len(moved) or 'none'} of {len(keys)} cells moved.{named}"
+    return {"programs": found.programs, "left_out": found.left_out,
+            "cells": [{"cell": found.numbers.get(key), "label": labels[key], "title": titles[key], "points": [*map(_point, found.points[key])]} for key in keys]}, [sentence]
