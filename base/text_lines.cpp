@@ -94,7 +94,8 @@ std::string visible(std::string_view text, std::string_view kept) {
         else if (text.front() == '\t')
             shown += "\\t";
         else
-            shown += code != 0x7f && bytes == 1 ? fmt::format("\\x{:02x}", code) : fmt::format("\\u{:04x}", code);
+            shown +=
+                code != 0x7f && bytes == 1 ? fmt::format("\\x{:02x}", code) : fmt::format("\\u{:04x}", code);
         text.remove_prefix(bytes);
     }
     return shown;

@@ -92,6 +92,17 @@ class Outputs(Case):
         self.kept(self.mesh, "is an input", "view", scene, "-o", lambda name: name)
         self.kept(self.mesh, "is an input", "report", plan, "--scene", scene, "-o", lambda name: name)
 
+    def test_folders_of_pages_and_figures(self):
+        for name, command in (("index.html", ("paper", "--device", "host", "--steps", "1", "-o")), ("bars.svg", ("accuracy", "plates", "--frames", "20", *ONE, "--figures"))):
+            folder = self.folder / name.partition(".")[0]
+            folder.mkdir()
+            self.assertTrue(self.records.exists())
+            os.link(self.records, folder / name)
+            before = self.records.read_bytes()
+            self.bad([name, "is a file of records"], *command, folder)
+            self.assertEqual(self.records.read_bytes(), before)
+            self.assertEqual([path.name for path in folder.iterdir()], [name])
+
     def test_two_outputs_are_two_files(self):
         empty, link = self.folder / "empty.csv", self.folder / "link.csv"
         empty.touch()

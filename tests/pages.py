@@ -88,7 +88,7 @@ class Pages(ScriptCase):
                                     ((self.work / "none.jsonl",), "No such file"), ((copy,), "is not JSON"), ((pile,), "pile.jsonl:1: is no record of a cell of the plan"),
                                     ((plan, "--picture"), "expected one argument"), ((), "arguments are required")):
             self.refused("answer", expected, *arguments)
-        self.refused("answer", "none/a.svg: cannot be written", plan, "--picture", self.work / "none/a.svg", code=3)
+        self.refused("answer", "none/a.svg: cannot be written", plan, "--picture", self.work / "none/a.svg")
         few = self.file("few.jsonl", committed("h200/plan.jsonl")[:3])
         self.refused("answer", "--picture needs all scenes of the plan", few, "--picture", self.work / "few.svg")
 

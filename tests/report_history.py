@@ -23,16 +23,16 @@ class History(ReportCase):
         super().setUp()
         self.random = random.Random(7)
 
-    def record(self, commit, factor, session="", key="", day=0, rounds=12):
+    def record(self, commit, factor, session="", key=""):
         """A record with `factor` times the time of the committed one, with noise of 0.2 %."""
         record = copy.deepcopy(next(one for one in self.plan if one["key"].startswith("tiled")))
         record["key"] += key
         record["settings"]["pad"] = key or "0"
         record |= {"session": session or f"{commit[:3]}{factor}{key}"}
-        record["environment"] |= {"commit": commit, "dirty": False, "date": f"2026-05-{10 + (day or NAMES.index(commit)):02}T00:00:00Z"}
+        record["environment"] |= {"commit": commit, "dirty": False, "date": f"2026-05-{10 + NAMES.index(commit)}T00:00:00Z"}
         record["conditions"] = None
-        record["total_ns"]["samples"] = [round(1e6 * factor * self.random.gauss(1, 0.002)) for _ in range(rounds)]
-        record["total_ns"]["rounds"] = list(range(rounds))
+        record["total_ns"]["samples"] = [round(1e6 * factor * self.random.gauss(1, 0.002)) for _ in range(12)]
+        record["total_ns"]["rounds"] = list(range(12))
         return record
 
     def history(self, *records):
@@ -43,8 +43,8 @@ class History(ReportCase):
         found = self.history(*records)
         return {key[-1]: "".join(found.programs[point.program][0] for point in points if point.moved) for key, points in found.points.items()}
 
-    def series(self, *factors, key="k", **more):
-        return [self.record(commit, factor, key=key, **more) for commit, factor in zip(NAMES, factors)]
+    def series(self, *factors, key="k"):
+        return [self.record(commit, factor, key=key) for commit, factor in zip(NAMES, factors)]
 
     def test_a_step_is_found_where_it_is(self):
         self.assertEqual(self.moves(*self.series(1, 1, 1.1, 1.1)), {"k": "c"})

@@ -41,7 +41,7 @@ void DumpFile::clear() const {
     struct stat facts {};
     const int descriptor = fileno(file_.get());
     if (fstat(descriptor, &facts) == 0 && S_ISREG(facts.st_mode) && ftruncate(descriptor, 0) != 0)
-        throw OutputError(fmt::format("{}: cannot be emptied ({})", path_, std::strerror(errno)));
+        throw OutputError(fmt::format("{}: cannot be shortened ({})", path_, std::strerror(errno)));
 }
 
 void DumpFile::write(std::string_view text) const {

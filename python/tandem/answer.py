@@ -14,6 +14,7 @@ import sys
 from . import cell_rows, kinds, lines, markdown
 from .commands import Parser, check_packages, run, warn
 from .errors import BadUse, OutputError
+from .files import check_output
 
 SCENES = {"plates": "plates, frames 20:121", "funnel": "funnel, frames 140:149", "glasses": "glasses, frames 140:149",
           "0.05": "2,000 jacks, density 0.05", "0.2": "2,000 jacks, density 0.2"}
@@ -235,6 +236,7 @@ def picture(cells, path):
         ax.xaxis.set_major_formatter("{x:g}")
         ax.grid(axis="x", alpha=0.25)
         try:
+            check_output(path)
             figure.savefig(path, metadata={"Date": None})
         except OSError as problem:
             raise OutputError(f"{path}: cannot be written ({problem.strerror})") from None

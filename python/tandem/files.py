@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""Checks of outputs, and atomic replacement of files."""
+"""Checks of outputs, figures without control characters, and atomic replacement of files."""
 import errno
 import fcntl
+import io
 import os
 import stat
 
 from .errors import BadUse, OutputError
+from .text_lines import visible
 
 _STARTS = (b'"schema":', b'"schema" :')
 
@@ -90,6 +92,14 @@ def _remove_stale(path):
         descriptor = _locked(path, os.O_RDWR)
         os.remove(path)
         os.close(descriptor)
+
+
+def save_svg(figure, path, **options):
+    """Saves a figure of Matplotlib as SVG, with control characters of its texts as escapes. `options`: those of its savefig()."""
+    text = io.BytesIO()
+    figure.savefig(text, format="svg", **options)
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(visible(text.getvalue().decode(), "\n\t"))
 
 
 def replace_whole(path, data):

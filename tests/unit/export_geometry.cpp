@@ -130,14 +130,14 @@ TEST(ExportGeometry, PartsHaveTheirSizes) {
 TEST(ExportGeometry, DepthsArePartsOfTheDeepest) {
     const auto scene = make_scene("plates:frames=2");
     std::size_t calls = 0;
-    const GeometryParts parts{
-        .chunks = one_chunk, .contacts = [&](const Frame&) {
-            std::vector<ContactPoint> contacts(4);
-            const double all[2][4] = {{-0.5, 0, 0.25, std::nan("")}, {-1, -2, 0, 0}};
-            for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i].depth = all[calls][i];
-            ++calls;
-            return contacts;
-        }};
+    const GeometryParts parts{.chunks = one_chunk, .contacts = [&](const Frame&) {
+                                  std::vector<ContactPoint> contacts(4);
+                                  const double all[2][4] = {{-0.5, 0, 0.25, std::nan("")}, {-1, -2, 0, 0}};
+                                  for (std::size_t i = 0; i < contacts.size(); ++i)
+                                      contacts[i].depth = all[calls][i];
+                                  ++calls;
+                                  return contacts;
+                              }};
     const auto json = nlohmann::json::parse(geometry_json(scene, std::array<std::size_t, 2>{0, 1}, parts));
     const auto depths = [&](std::size_t frame) {
         const auto text = json["contacts"][frame]["depths"].get<std::string>();

@@ -4,6 +4,7 @@
 #include "harness/commands/external.h"
 #include "harness/commands/programs.h"
 #include "base/error.h"
+#include "base/files_in_use.h"
 
 #include <filesystem>
 #include <fmt/format.h>
@@ -22,6 +23,8 @@ Figures::Figures(std::string folder) : folder_(std::move(folder)) {
     std::error_code code;
     std::filesystem::create_directories(folder_, code);
     if (code) throw InputError(fmt::format("--figures: cannot make {}: {}", folder_, code.message()));
+    for (const auto& file : std::filesystem::directory_iterator(folder_))
+        if (file.path().extension() == ".svg" || file.path().extension() == ".csv") check_output(file.path());
 }
 
 void Figures::draw(const std::string& records) const {

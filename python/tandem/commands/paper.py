@@ -3,6 +3,7 @@
 Exits with 2 and one error line for bad use and a folder without records, and with 3 if a step failed or a file cannot be written."""
 import argparse
 import csv
+import pathlib
 
 from ..csv_fields import fields
 from ..errors import BadUse
@@ -46,13 +47,20 @@ def all_tables(folder):
                                       simulation_tables.table6, simulation_tables.table7)]
 
 
+def check_outputs(path):
+    """Raises BadUse if a file of the page cannot be written, or is a file of records."""
+    folder = pathlib.Path(path)
+    if folder.is_dir():
+        for output in (*folder.glob("*.csv"), *folder.glob("*.svg"), folder / "index.html", folder / "verdicts.md"):
+            check_output(output)
+
+
 def build(path):
     """Makes all files. Returns a line with their numbers. Raises lines.RecordError, OSError."""
     from ..paper import claims, figures, page, pictures, simulation_figures, summary
     from ..paper.folder import Folder
     folder = Folder(path)
-    for output in (*folder.path.glob("*.csv"), *folder.path.glob("*.svg"), folder.path / "index.html", folder.path / "verdicts.md"):
-        check_output(output)
+    check_outputs(path)
     made = all_tables(folder)
     for table in made:
         table.write(folder.path)
@@ -96,6 +104,7 @@ def main(arguments, program):
     try:
         if not options.measure_only and not options.dry_run:
             check_packages("tandem paper", PACKAGES, ", or give --measure-only")  # fails before anything is measured
+            check_outputs(options.output)
         if options.draw_only:
             return draw(options.output)
         steps = measuring.steps_of(options.size, options.device)
@@ -108,7 +117,7 @@ def main(arguments, program):
             for number in numbers:
                 folder.forget(steps[number])
         worst = measuring.run_steps(folder, steps, numbers)
-    except measuring.BadUse as error:
+    except BadUse as error:
         return print_error(error, 2)
     except OSError as error:
         return print_error(f"{error.filename or options.output}: {error.strerror}", 3)

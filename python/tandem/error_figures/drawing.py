@@ -6,7 +6,7 @@ import matplotlib
 import matplotlib.pyplot as plt
 
 from ..csv_fields import fields
-from ..files import check_output
+from ..files import check_output, save_svg
 from . import bars, cliffs, pareto
 from .points import swept
 
@@ -31,7 +31,7 @@ def _save(folder, name, drawn):
     figure, points = drawn
     for ending in ("svg", "csv"):
         check_output(folder / f"{name}.{ending}")
-    figure.savefig(folder / f"{name}.svg", metadata={"Date": None}, bbox_inches="tight")
+    save_svg(figure, folder / f"{name}.svg", metadata={"Date": None}, bbox_inches="tight")
     plt.close(figure)
     _write_data(folder / f"{name}.csv", points)
     return [f"{name}.svg"]

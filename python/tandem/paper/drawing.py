@@ -13,6 +13,7 @@ import matplotlib.pyplot as plt
 from matplotlib import ticker
 
 from ..csv_fields import fields
+from ..files import save_svg
 from ..plots import COLOURS, INK, PALE, WINNER
 from .tables import short
 
@@ -44,7 +45,7 @@ class Plot:
 
     def save(self, folder, title):
         self.figure.suptitle("\n".join(textwrap.wrap(title, 70)), x=0.01, ha="left", fontsize=10.5, fontweight="bold", color=INK)
-        self.figure.savefig(folder / f"figure{self.number}.svg", metadata={"Date": None, "Title": title})
+        save_svg(self.figure, folder / f"figure{self.number}.svg", metadata={"Date": None, "Title": title})
         plt.close(self.figure)
         write_rows(folder, self.number, self.rows)
         return Figure(self.number, title, self.rows)
