@@ -44,8 +44,10 @@ def visible(text, kept=""):
 def visible_json(text):
     """The same of a JSON text: of the characters in its strings, not of their escapes."""
     def shown(found):
-        character = json.loads(f'"{found[0]}"') if found[0][0] == "\\" else found[0]
-        return json.dumps(visible(character))[1:-1] if _CONTROL.fullmatch(character) else found[0]
+        is_escape = found[0][0] == "\\"
+        character = json.loads(f'"{found[0]}"') if is_escape else found[0]
+        is_part = is_escape and "\ud800" <= character <= "\udfff"  # of a pair that is one character
+        return json.dumps(visible(character))[1:-1] if _CONTROL.fullmatch(character) and not is_part else found[0]
     return re.sub(r"\\u[0-9a-fA-F]{4}|\\.|" + _CONTROL.pattern, shown, text)
 
 
