@@ -15,7 +15,7 @@ from tandem.comparison import compare
 from tandem.report.history import history_of, shown_history
 from tandem.report.reading import read_records
 
-NAMES = ("a" * 40, "b" * 40, "c" * 40, "d" * 40)
+NAMES = tuple(letter * 40 for letter in "abcde")
 
 
 class History(ReportCase):
@@ -51,6 +51,13 @@ class History(ReportCase):
         self.assertEqual(self.moves(*self.series(1, 0.9, 0.9, 1)), {"k": "bd"})
         self.assertEqual(self.moves(*self.series(1, 1, 1, 1)), {"k": ""})
         self.assertEqual(self.moves(*self.series(1, 1, 1.1, 1, key="i"), *self.series(1, 1, 1, 1, key="j")), {"i": "cd", "j": ""})
+
+    def test_titles_name_the_last_moves(self):
+        cells = lambda *factors: read_records([str(self.write("titles.jsonl", self.series(*factors)))]).cells
+        titles = [shown_history(cells(*factors))[0]["cells"][0]["title"] for factors in ((1, 2, 3, 4), (1, 2, 2, 2), (1, 2, 3, 4, 5))]
+        self.assertRegex(titles[0], "^tiled takes .* since bbbbbbb, then .* since ccccccc, then .* since ddddddd$")
+        self.assertRegex(titles[1], "^tiled takes .* since bbbbbbb$")
+        self.assertRegex(titles[2], "^tiled moved 4 times; it takes .* since ccccccc, then .* since ddddddd, then .* since eeeeeee$")
 
     def test_drift_adds_up(self):
         self.assertEqual(self.moves(*self.series(1, 1.007, 1.014, 1.021)), {"k": "c"})  # 1 % is the threshold; no step reaches it
@@ -88,7 +95,7 @@ class History(ReportCase):
         self.draw("history")
         self.assertRegex(self.text("#history h3"), "^pad=j takes 1.2")
         chart = "Chart.getChart(document.querySelector('#history canvas'))"
-        self.assertEqual(self.browser.run(f"{chart}.data.labels"), [name[:7] for name in NAMES])
+        self.assertEqual(self.browser.run(f"{chart}.data.labels"), [name[:7] for name in NAMES[:4]])
         moved, times = self.browser.run(f"{chart}.data.datasets.map(one => one.data)")
         self.assertEqual([one is not None for one in moved], [False, False, True, False])
         for time, factor in zip(times, (1, 1, 1.25, 1.25)):

@@ -118,6 +118,8 @@ def _change(point):
 
 def _title(name, points, programs):
     moves = [f"{_change(point)} since {programs[point.program]}" for point in points if point.moved]
+    if len(moves) > MAX_NAMED:
+        return f"{name} moved {len(moves)} times; it {', then '.join(moves[-MAX_NAMED:])}"
     return f"{name} {', then '.join(moves)}" if moves else f"{name} did not move over {len(points)} commits"
 
 
