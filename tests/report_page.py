@@ -267,8 +267,8 @@ class Pages(ReportCase):
         self.bad("schema 7", "report", self.work / "profile.jsonl", "-o", page)
         self.assertFalse(page.exists())
         good = self.write("good.jsonl", self.plan[:1])
-        self.bad("nowhere", "report", good, "-o", self.work / "nowhere/page.html", code=3)
-        self.bad("is not a regular file", "report", good, "-o", self.work, code=3)
+        self.bad("nowhere", "report", good, "-o", self.work / "nowhere/page.html")
+        self.bad("is a folder", "report", good, "-o", self.work)
         self.bad("unknown scene", "view", "plate", "-o", page)
 
     def test_more_cells_than_a_page_shows(self):
