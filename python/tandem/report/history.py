@@ -80,13 +80,13 @@ def _find_moves(points, programs):
     correction, so that LEVEL is that of the page."""
     base = {}
     for number in range(programs):
-        present = {key: point for key, all_points in points.items() for point in all_points if point.program == number}
-        known = [key for key in present if key in base]
+        current = {key: point for key, all_points in points.items() for point in all_points if point.program == number}
+        known = [key for key in current if key in base]
         if known:
-            matched = match(_Side([base[key] for key in known]), _Side([present[key].cell for key in known]), level=LEVEL / (programs - 1))
+            matched = match(_Side([base[key] for key in known]), _Side([current[key].cell for key in known]), level=LEVEL / (programs - 1))
             for key, compared in zip(known, matched.cells):
-                present[key].compared = compared
-        base |= {key: point.cell for key, point in present.items() if key not in base or point.moved}
+                current[key].compared = compared
+        base |= {key: point.cell for key, point in current.items() if key not in base or point.moved}
 
 
 def history_of(cells):
