@@ -29,7 +29,8 @@ class Access(ReportCase):
                 self.assertGreater(result["passes"], 10)
 
     def test_a_page_with_all_parts(self):
-        files = [self.write("plan.jsonl", self.plan[:12])]
+        other = self.plan[0] | {"session": "0" * 16, "environment": self.plan[0]["environment"] | {"commit": "0" * 40}}
+        files = [self.write("plan.jsonl", [*self.plan[:12], other])]
         for name, count in (("accuracy", 8), ("profile", 1), ("ceilings", 9), ("simulation-funnel", 40), ("thresholds", 9)):
             lines = (RECORDS / f"{name}.jsonl").read_text().splitlines()[:count]
             files.append(self.write(f"{name}.jsonl", map(json.loads, lines)))
