@@ -59,6 +59,7 @@ std::size_t export_vtu(const ExportOptions& options, const Scene& scene,
                        std::span<const std::size_t> frames) {
     std::optional<FrameContacts> finder;
     if (options.contacts) finder.emplace(options.device, scene);
+    make_folder(options.vtu);
     const auto chunks = chunks_of(scene);
     std::vector<TimedFile> bodies, contacts;
     std::size_t found = 0;
@@ -86,8 +87,7 @@ void check_outputs(const ExportOptions& options, std::span<const std::size_t> fr
         if (!path.empty()) check_output(path);
     if (const char* page = std::getenv("TANDEM_PAGE"); page != nullptr && !options.geometry.empty())
         check_output(page);
-    if (options.vtu.empty()) return;
-    make_folder(options.vtu);
+    if (!std::filesystem::is_directory(options.vtu)) return; // export_vtu() makes the folder
     for (const auto* name : {"bodies.pvd", "contacts.pvd"}) check_output(options.vtu + "/" + name);
     for (const auto i : frames) {
         check_output(options.vtu + "/" + bodies_file(i));
