@@ -8,6 +8,7 @@ import re
 import warnings
 
 WHAT_TO_GIVE = "give files that 'tandem run --out' wrote"
+RECORD_AGAIN = "record the cell again"
 OLDEST, NEWEST = 2, 4
 # Exceptions of code that reads fields of a record which does not match its schema.
 FIELD_ERRORS = (KeyError, TypeError, AttributeError, IndexError, ValueError, ArithmeticError)
@@ -54,7 +55,17 @@ def checked_cell(record, location):
     if schema > NEWEST:
         raise RecordError(f"{location}: a record of schema {schema}, but this package reads schemas {OLDEST} to {NEWEST}; use the package "
                           "of the program that wrote it")
+    _check_samples(record, location)
     return record
+
+
+def _check_samples(record, location):
+    """Raises RecordError for a time of a replay that is no finite number above 0. Other types are for the readers of the field."""
+    total = record.get("total_ns")
+    samples = total.get("samples") if isinstance(total, dict) else None
+    for ns in samples if isinstance(samples, list) else ():
+        if isinstance(ns, (int, float)) and not 0 < ns < 2**63:
+            raise RecordError(f"{location}: a sample of {str(ns)[:24]} ns is not a valid time; {RECORD_AGAIN}")
 
 
 def is_verdict(record):
