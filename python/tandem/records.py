@@ -163,9 +163,27 @@ def read(files):
     paths = [files] if isinstance(files, (str, os.PathLike)) else list(files)
     if not paths:
         raise lines.RecordError("no file is named; name files of records")
-    rows = {name: [] for name in ("cells", *PARTS)}
     verdicts = RecordedVerdicts()
-    for record, location, path in lines.merged(paths, verdicts.add):
+    records = lines.merged(paths, verdicts.add)
+    try:
+        return _records(records, verdicts)
+    except lines.RecordError:
+        raise
+    except lines.FIELD_ERRORS:  # pandas names no line
+        for one in records:
+            try:
+                _records([one], verdicts)
+            except lines.RecordError:
+                raise
+            except lines.FIELD_ERRORS:
+                raise lines.RecordError(f"{one[1]}: a record with a field that its schema does not allow; {lines.WHAT_TO_GIVE}") from None
+        raise
+
+
+def _records(records, verdicts):
+    """Records of rows of lines.merged()."""
+    rows = {name: [] for name in ("cells", *PARTS)}
+    for record, location, path in records:
         try:
             cell = _Cell(len(rows["cells"]), record)
             rows["cells"].append(cell_rows.row(record) | {"file": os.fspath(path), "partial": bool(at(record, "sampling", "interrupted"))})
