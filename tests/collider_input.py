@@ -37,7 +37,7 @@ class BadInput(ColliderCase):
                 (ValueError, "meshes[0]: no tetrahedra", (points, tets[:0])),
                 (ValueError, "nowhere.msh: No such file or directory", "nowhere.msh"),
                 (ValueError, "is in CUDA's memory; copy it to the host's memory (.cpu() or .get())", (OnDevice(), tets)),
-                (TypeError, "meshes[0]: type int; expected a tandem.Mesh, a path or (vertices, tetrahedra)", 7)):
+                (TypeError, "meshes[0]: type int; expected a tandem.Mesh, a path, (vertices, tetrahedra), or an object with points and cells_dict", 7)):
             with self.subTest(words):
                 self.expect(kind, words, tandem.Collider, [mesh, self.files[1]])
         self.expect(TypeError, "meshes: type str; expected a list", tandem.Collider, "a.msh")

@@ -3,6 +3,7 @@
 
 #include "algorithms/parameters/table.h"
 #include "python/core/arrays.h"
+#include "python/core/meeting.h"
 #include "base/error.h"
 
 #include <fmt/format.h>
@@ -19,19 +20,25 @@ static_assert(sizeof(Pair) == 4 * sizeof(std::int32_t) && sizeof(ContactPoint) %
 } // namespace
 
 Answer::~Answer() {
+    if (collider_->is_lost()) {
+        static_cast<void>(new auto(std::move(on_device_)));
+        static_cast<void>(new auto(std::move(result_.parts)));
+        return;
+    }
     // The buffers return to the device's pool, which other threads use under this lock.
-    const std::lock_guard lock(collider_->mutex());
+    const auto lock = collider_->lock();
     on_device_.reset();
     result_.parts.clear();
+    frame_.reset();
 }
 
 Digest Answer::digest() const {
-    const std::lock_guard lock(collider_->mutex());
+    const auto lock = collider_->lock();
     return result_.digest();
 }
 
 Digest Answer::contact_digest() const {
-    const std::lock_guard lock(collider_->mutex());
+    const auto lock = collider_->lock();
     return result_.contact_digest();
 }
 
@@ -43,21 +50,31 @@ void Answer::check_pairs_kept() const {
 }
 
 std::vector<Pair> Answer::pairs() const {
-    const std::lock_guard lock(collider_->mutex());
+    const auto lock = collider_->lock();
     check_pairs_kept();
     return result_.download();
 }
 
 std::vector<ContactPoint> Answer::contacts() const {
-    const std::lock_guard lock(collider_->mutex());
+    const auto lock = collider_->lock();
     check_pairs_kept();
     if (collider_->settings()[parameters::contact_rule] == ContactRule::none)
         throw InputError("setting contact_rule=none makes no contacts; make the collider without it");
     return result_.download_contacts();
 }
 
+std::vector<Pair> Answer::meeting() const {
+    if (!frame_)
+        throw InputError("meeting() needs the frame, which was in memory of the device; give its arrays in "
+                         "host memory");
+    const auto found = pairs();
+    const auto lock = collider_->lock();
+    const auto& [x, y, z] = result_.origin;
+    return meeting_of(collider_->scene(), *frame_, geometry_of(collider_->settings()), {x, y, z}, found);
+}
+
 const Answer::OnDevice& Answer::on_device() const {
-    const std::lock_guard lock(collider_->mutex());
+    const auto lock = collider_->lock();
     check_pairs_kept();
     if (on_device_) return *on_device_;
     auto& device = *collider_->devices().front();
@@ -86,10 +103,11 @@ namespace {
 
 using Rows = nb::ndarray<nb::numpy, std::int32_t, nb::shape<-1, 4>>;
 
+template<auto which>
 Rows pairs(const Answer& answer) {
     auto found = [&] {
         const nb::gil_scoped_release released;
-        return answer.pairs();
+        return (answer.*which)();
     }();
     return owned_array<std::int32_t, 4>(std::move(found));
 }
@@ -145,7 +163,8 @@ void bind_answer(nb::module_& module) {
         .def_prop_ro("batches", number<&FrameResult::batches>())
         .def("digest", [](const Answer& self) { return digest_tuple(self.digest()); })
         .def("contact_digest", [](const Answer& self) { return digest_tuple(self.contact_digest()); })
-        .def("pairs", &pairs)
+        .def("pairs", &pairs<&Answer::pairs>)
+        .def("meeting", &pairs<&Answer::meeting>)
         .def("contacts", &contacts)
         .def("pairs_on_device", &pairs_on_device);
 }

@@ -9,8 +9,11 @@ namespace tandem::python {
 /// interpreter's lock.
 class Answer {
 public:
-    Answer(std::shared_ptr<Collider> collider, FrameResult result, double seconds)
-        : collider_(std::move(collider)), result_(std::move(result)), seconds_(seconds) {}
+    Answer(std::shared_ptr<Collider> collider, Run run)
+        : collider_(std::move(collider)),
+          result_(std::move(run.result)),
+          seconds_(run.seconds),
+          frame_(std::move(run.frame)) {}
     Answer(const Answer&) = delete;
     Answer& operator=(const Answer&) = delete;
     ~Answer();
@@ -22,6 +25,9 @@ public:
     /// Sorted. Throw InputError if the settings keep no pairs or make no contacts.
     std::vector<Pair> pairs() const;
     std::vector<ContactPoint> contacts() const;
+    /// Those of pairs() whose tetrahedra meet in the frame (meeting_of). Throws InputError also if the frame
+    /// was in memory of a device, which later work may have overwritten.
+    std::vector<Pair> meeting() const;
 
     /// Pairs as rows of four words in memory of the device that found them.
     struct OnDevice {
@@ -40,6 +46,7 @@ private:
     std::shared_ptr<Collider> collider_;
     FrameResult result_;
     double seconds_;
+    std::shared_ptr<const Frame> frame_; ///< null if it was in memory of the device
     mutable std::optional<OnDevice> on_device_;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "python/core/collider.h"
 
+#include "algorithms/bodies/origin.h"
 #include "algorithms/bodies/range.h"
 #include "algorithms/parameters/table.h"
 #include "backends/cuda/cuda_device.h"
@@ -59,9 +60,17 @@ std::size_t cuda_number(const std::string& device) {
     return number;
 }
 
+using BodyPairs = std::optional<std::span<const BodyPair>>;
+
 /// HostInput has checked frames of the host; the device checks those in its memory.
-FrameResult run_frame(Session& session, const FrameInput& frames) { return session.run_unchecked(frames); }
-FrameResult run_frame(Session& session, const DeviceFrameInput& frames) { return session.run(frames); }
+FrameResult run_frame(Session& session, const FrameInput& frames, const BodyPairs& pairs = {}) {
+    return pairs ? session.run_unchecked(frames, *pairs) : session.run_unchecked(frames);
+}
+FrameResult run_frame(Session& session, const DeviceFrameInput& frames, const BodyPairs& pairs = {}) {
+    if (!pairs) return session.run(frames);
+    return frames.next == nullptr ? session.run(frames.frame, *pairs)
+                                  : session.run(frames.frame, *frames.next, *pairs);
+}
 
 } // namespace
 
@@ -70,11 +79,28 @@ Collider::Collider(std::vector<Mesh> meshes, const ColliderOptions& options) : a
         tandem::algorithm(algorithm_); // reports an unknown name before devices are opened
     open_devices(options);
     scene_ = scene_of(std::move(meshes), options);
-    scene_.frame = [this](std::size_t) { return rest_frame(scene_); };
+    scene_.frame = [this](std::size_t) { return first_ ? *first_ : rest_frame(scene_); };
     prepare(options);
 }
 
+/// A fork leaves nothing of the devices' runtimes that could free their memory, and a call would hang.
+Collider::~Collider() {
+    if (!is_lost()) return;
+    static_cast<void>(session_.release());
+    static_cast<void>(new auto(std::move(device_input_)));
+    static_cast<void>(new auto(std::move(backends_)));
+}
+
+std::unique_lock<std::mutex> Collider::lock() {
+    if (has_runtime(devices_)) check_process(name_of(devices_));
+    return std::unique_lock(mutex_);
+}
+
 void Collider::open_devices(const ColliderOptions& options) {
+    if (options.device != "host") {
+        check_process(options.device);
+        note_runtime();
+    }
     if (options.stream) {
         BackendReport cuda{.name = "cuda", .devices = {}, .reason = {}};
         cuda.devices.push_back(
@@ -106,24 +132,42 @@ void Collider::prepare(const ColliderOptions& options) {
     }
     precision_ = geometry_of(settings).precision;
     motion_ = settings[parameters::motion];
+    origin_ = geometry_of(settings).origin;
     host_input_.emplace(scene_, precision_);
     check_range(scene_, rest_frame(scene_), precision_);
-    if (traversal != nullptr) session_ = traversal->prepare(devices_, scene_, settings);
+    if (traversal == nullptr) return;
+    session_ = traversal->prepare(devices_, scene_, settings);
+    prepared_ = std::move(settings);
+}
+
+void Collider::begin_at(const Input& input) {
+    if (first_ || origin_ != Origin::automatic) return;
+    first_ = input.on_device ? downloaded(*devices_.front(), scene_, device_frames(input).frame)
+                             : host_frames(input).frame;
+    if (session_ && session_->origin() != origin_of(scene_, origin_))
+        session_ = tandem::algorithm(algorithm_)
+                       .prepare(devices_, scene_, prepared_ ? *prepared_ : session_->settings());
 }
 
 template<class Frames>
-std::pair<FrameResult, double> Collider::run_frames(const Frames& frames) {
+Run Collider::run_frames(const Frames& frames, BodyPairs body_pairs) {
     if (!session_) choose_for(frames, seconds_of_choosing);
     const auto begin = std::chrono::steady_clock::now();
-    auto result = run_frame(*session_, frames);
+    auto result = run_frame(*session_, frames, body_pairs);
     return {std::move(result),
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()};
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(),
+            {}};
 }
 
-std::pair<FrameResult, double> Collider::run(const Input& input) {
-    const std::lock_guard lock(mutex_);
+Run Collider::run(const Input& input) {
+    const auto own = lock();
     check(input);
-    return input.on_device ? run_frames(device_frames(input)) : run_frames(host_frames(input));
+    begin_at(input);
+    const auto pairs = input.body_pairs ? BodyPairs(*input.body_pairs) : std::nullopt;
+    if (input.on_device) return run_frames(device_frames(input), pairs);
+    auto run = run_frames(host_frames(input), pairs);
+    run.frame = host_input_->last();
+    return run;
 }
 
 template<class Frames>
@@ -136,32 +180,34 @@ std::vector<Trial> Collider::choose_for(const Frames& frames, double seconds) {
 }
 
 std::vector<Trial> Collider::tune(const Input& input, double seconds) {
-    const std::lock_guard lock(mutex_);
+    const auto own = lock();
     if (candidates_.empty())
         throw InputError(
             fmt::format("tune: algorithm {} was named; make the collider with algorithm=auto", algorithm_));
     check(input);
+    begin_at(input);
     return input.on_device ? choose_for(device_frames(input), seconds)
                            : choose_for(host_frames(input), seconds);
 }
 
 void Collider::reset() {
-    const std::lock_guard lock(mutex_);
+    const auto own = lock();
+    first_.reset();
     if (session_) session_->reset();
 }
 
 std::string Collider::algorithm() {
-    const std::lock_guard lock(mutex_);
+    const auto own = lock();
     return algorithm_;
 }
 
 SettingTexts Collider::setting_texts() {
-    const std::lock_guard lock(mutex_);
+    const auto own = lock();
     return session_ ? session_->settings().texts() : SettingTexts{};
 }
 
 std::vector<std::uintptr_t> Collider::addresses() {
-    const std::lock_guard lock(mutex_);
+    const auto own = lock();
     return device_input_ ? device_input_->addresses() : std::vector<std::uintptr_t>{};
 }
 

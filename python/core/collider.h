@@ -6,6 +6,7 @@
 #include "python/core/choosing.h"
 #include "python/core/device_input.h"
 #include "python/core/host_input.h"
+#include "python/core/process.h"
 
 #include <algorithm>
 #include <memory>
@@ -25,15 +26,25 @@ struct ColliderOptions {
     std::optional<std::uintptr_t> stream; ///< a CUstream of the device, a CUDA one; 0: default stream
 };
 
+/// One run of a collider.
+struct Run {
+    FrameResult result;
+    double seconds = 0;                 ///< of the frame itself, measured as the program does
+    std::shared_ptr<const Frame> frame; ///< null if it was in memory of the device
+};
+
 /// A scene of meshes on its own devices, prepared for one algorithm. One thread at a time uses it.
 class Collider {
 public:
     /// Throws InputError or DeviceError.
     Collider(std::vector<Mesh> meshes, const ColliderOptions& options);
+    Collider(const Collider&) = delete;
+    Collider& operator=(const Collider&) = delete;
+    ~Collider();
 
-    /// Finds the pairs of a frame, with motion=linear up to its successor. Returns the result and the seconds
-    /// of the frame itself, measured as the program does. Throws InputError or DeviceError.
-    std::pair<FrameResult, double> run(const Input& input);
+    /// Finds the pairs of a frame, with motion=linear up to its successor. Throws InputError, or DeviceError
+    /// also in a forked process.
+    Run run(const Input& input);
     /// Algorithm auto: times the candidates on that frame and selects the fastest for later runs. Throws
     /// InputError for another algorithm.
     std::vector<Trial> tune(const Input& input, double seconds);
@@ -55,8 +66,13 @@ public:
     std::vector<std::uintptr_t> addresses();
     /// Keeps the Python object that owns the stream alive as long as the devices.
     void set_stream_owner(nanobind::object owner) { stream_owner_ = std::move(owner); }
-    /// Guards every use of the devices, also by answers. Release the interpreter's lock before locking it.
-    std::mutex& mutex() { return mutex_; }
+    /// Guards every use of the devices, also by answers. Release the interpreter's lock before the call.
+    /// Throws DeviceError in a forked process, unless all devices are the host.
+    std::unique_lock<std::mutex> lock();
+    /// Whether the devices are lost, because a fork made this process. Objects in their memory must then
+    /// leak.
+    bool is_lost() const { return is_forked() && has_runtime(devices_); }
+    const Scene& scene() const { return scene_; }
 
 private:
     void open_devices(const ColliderOptions& options);
@@ -64,11 +80,14 @@ private:
     /// Throws InputError for a wrong number of rows, and unless there is a successor exactly with
     /// motion=linear.
     void check(const Input& input) const;
+    /// Setting origin=auto: takes the origin of this frame, the first, and prepares the session again if it
+    /// differs.
+    void begin_at(const Input& input);
     /// A checked input as frames. The next call overwrites them.
     FrameInput host_frames(const Input& input);
     DeviceFrameInput device_frames(const Input& input);
     template<class Frames>
-    std::pair<FrameResult, double> run_frames(const Frames& frames);
+    Run run_frames(const Frames& frames, std::optional<std::span<const BodyPair>> body_pairs);
     template<class Frames>
     std::vector<Trial> choose_for(const Frames& frames, double seconds);
 
@@ -80,9 +99,12 @@ private:
     std::vector<Cell> candidates_; ///< candidates of algorithm auto
     Precision precision_ = Precision::fp32;
     Motion motion_ = Motion::none;
+    Origin origin_ = Origin::world;
     std::optional<HostInput> host_input_, next_host_input_; ///< of frames, and of their successors
     std::optional<DeviceInput> device_input_;
     std::unique_ptr<Session> session_; ///< null until an algorithm is chosen
+    std::optional<Settings> prepared_; ///< of the session; none of a chosen one
+    std::optional<Frame> first_;       ///< the first frame, if it determines the origin
     std::mutex mutex_;
 };
 

@@ -43,8 +43,7 @@ std::shared_ptr<Collider> make(const std::vector<const Mesh*>& meshes, const Col
 
 std::unique_ptr<Answer> run(const std::shared_ptr<Collider>& collider, const Input& input) {
     const nb::gil_scoped_release released;
-    auto [result, seconds] = collider->run(input);
-    return std::make_unique<Answer>(collider, std::move(result), seconds);
+    return std::make_unique<Answer>(collider, collider->run(input));
 }
 
 /// One tuple (algorithm, changed settings, seconds) per trial, the fastest first. None where input_of returns
@@ -61,6 +60,14 @@ std::optional<nb::list> tune(Collider& collider, nb::handle poses, nb::handle ve
     for (const auto& trial : trials)
         all.append(nb::make_tuple(trial.algorithm, trial.changes, trial.seconds));
     return all;
+}
+
+using BodyPairNumbers = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+std::vector<BodyPair> body_pairs_of(const BodyPairNumbers& numbers) {
+    std::vector<BodyPair> pairs;
+    for (const auto& [a, b] : numbers) pairs.push_back({a, b});
+    return pairs;
 }
 
 /// Address of the queue that producers of DLPack arrays get, 0 for the default stream.
@@ -87,9 +94,12 @@ void bind_collider(nb::module_& module) {
     bind_options(module);
     const auto released = nb::call_guard<nb::gil_scoped_release>();
     const auto run_given = [](const std::shared_ptr<Collider>& self, nb::handle poses, nb::handle vertices,
-                              nb::handle next_poses, nb::handle next_vertices) -> std::unique_ptr<Answer> {
-        const auto input = input_of(*self, {poses, vertices}, {next_poses, next_vertices});
-        return input ? run(self, *input) : nullptr;
+                              nb::handle next_poses, nb::handle next_vertices,
+                              const std::optional<BodyPairNumbers>& body_pairs) -> std::unique_ptr<Answer> {
+        auto input = input_of(*self, {poses, vertices}, {next_poses, next_vertices});
+        if (!input) return nullptr;
+        if (body_pairs) input->body_pairs = body_pairs_of(*body_pairs);
+        return run(self, *input);
     };
     const auto run_device_input = [](const std::shared_ptr<Collider>& self, nb::handle poses,
                                      const nb::list& vertices, nb::handle next_poses,
@@ -99,13 +109,13 @@ void bind_collider(nb::module_& module) {
     };
     nb::class_<Collider>(module, "Collider", "Implementation of tandem.Collider, which checks its input.")
         .def(nb::new_(&make), nb::arg("meshes"), nb::arg("options"), nb::arg("owner").none())
-        .def(
-            "run", run_given, nb::arg("poses").none(), nb::arg("vertices").none(),
-            nb::arg("next_poses").none(), nb::arg("next_vertices").none(),
-            nb::sig("def run(self, poses: object | None, vertices: object | None, next_poses: object | None, "
-                    "next_vertices: object | None) -> Answer | None"),
-            "Runs a frame. vertices, next_vertices: a list with one array per deformable body, or "
-            "{number: array}. Returns None for any other container.")
+        .def("run", run_given, nb::arg("poses").none(), nb::arg("vertices").none(),
+             nb::arg("next_poses").none(), nb::arg("next_vertices").none(), nb::arg("body_pairs").none(),
+             nb::sig(
+                 "def run(self, poses: object | None, vertices: object | None, next_poses: object | None, "
+                 "next_vertices: object | None, body_pairs: list[tuple[int, int]] | None) -> Answer | None"),
+             "Runs a frame. vertices, next_vertices: a list with one array per deformable body, or "
+             "{number: array}. Returns None for any other container.")
         .def("run_device_input", run_device_input, nb::arg("poses").none(), nb::arg("vertices"),
              nb::arg("next_poses") = nb::none(), nb::arg("next_vertices") = nb::none(),
              "Runs a frame whose arrays are all in memory of the device; for device host, in host memory. "

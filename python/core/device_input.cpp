@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "python/core/device_input.h"
 
+#include "python/core/host_input.h"
+
+#include <algorithm>
+
 namespace tandem::python {
 
 namespace {
@@ -9,6 +13,41 @@ constexpr std::size_t pose_numbers = 7, coordinates = 3;
 constexpr std::size_t max_adopted = 64;
 
 } // namespace
+
+namespace {
+
+std::vector<double> downloaded_numbers(Device& device, const DeviceRows& rows, std::size_t count) {
+    std::vector<double> numbers(count);
+    if (rows.precision == Precision::fp64) {
+        device.download(rows.buffer, std::as_writable_bytes(std::span(numbers)));
+        return numbers;
+    }
+    std::vector<float> singles(count);
+    device.download(rows.buffer, std::as_writable_bytes(std::span(singles)));
+    std::ranges::copy(singles, numbers.begin());
+    return numbers;
+}
+
+} // namespace
+
+Frame downloaded(Device& device, const Scene& scene, const DeviceFrame& frame) {
+    auto result = rest_frame(scene);
+    const StageScope scope(device, Stage::read);
+    if (frame.poses.buffer) {
+        const auto numbers = downloaded_numbers(device, frame.poses, pose_numbers * scene.bodies.size());
+        for (std::size_t body = 0; body < scene.bodies.size(); ++body)
+            if (!scene.bodies[body].deformable)
+                result.poses[body] = pose_of_row(numbers.data() + pose_numbers * body, body);
+    }
+    for (std::size_t body = 0; body < scene.bodies.size(); ++body) {
+        if (!scene.bodies[body].deformable) continue;
+        auto& vertices = result.deformed[body];
+        const auto numbers = downloaded_numbers(device, frame.deformed[body], coordinates * vertices.size());
+        for (std::size_t i = 0; i < vertices.size(); ++i)
+            vertices[i] = Eigen::Vector3d(&numbers[coordinates * i]);
+    }
+    return result;
+}
 
 /// One handle per array. At max_adopted all are released, for libraries that never reuse memory.
 Buffer DeviceInput::adopted(void* data, std::size_t bytes) {

@@ -9,6 +9,9 @@
 
 namespace tandem::python {
 
+/// A frame in memory of the device, copied to the host after the commands of its queue.
+Frame downloaded(Device& device, const Scene& scene, const DeviceFrame& frame);
+
 /// Makes frames in memory of a device for a session. Kernels read arrays of that device in place. Arrays in
 /// host memory are uploaded.
 class DeviceInput {

@@ -2,6 +2,7 @@
 #include "python/core/devices.h"
 
 #include "backends/registry.h"
+#include "python/core/process.h"
 
 namespace nb = nanobind;
 
@@ -26,6 +27,8 @@ nb::dict dictionary(const std::string& backend, const DeviceInfo& info) {
 }
 
 nb::list devices() {
+    check_process("devices()");
+    note_runtime();
     const auto backends = [] {
         const nb::gil_scoped_release released;
         return discover();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "algorithms/traversal.h"
 #include "python/core/given_rows.h"
 
 #include <vector>
@@ -22,7 +23,8 @@ struct FrameArrays {
 /// Arrays of one call.
 struct Input {
     FrameArrays frame;
-    std::optional<FrameArrays> next; ///< the frame's successor, with motion=linear
+    std::optional<FrameArrays> next;                   ///< the frame's successor, with motion=linear
+    std::optional<std::vector<BodyPair>> body_pairs{}; ///< checked, ascending; none: the session finds them
     bool on_device = false; ///< whether kernels read some of the arrays in memory of the collider's device
 };
 

@@ -122,11 +122,15 @@ std::optional<GivenRows> by_buffer(nb::handle object, const WantedRows& wanted) 
     return GivenRows{.data = view.buf, .rows = static_cast<std::size_t>(view.shape[0]), .owner = held};
 }
 
-GivenRows on_host(nb::handle object, const WantedRows& wanted) {
-    if (auto given = by_buffer(object, wanted)) return std::move(*given);
+GivenRows by_host_array(nb::handle object, const WantedRows& wanted) {
     const auto rows =
         nb::module_::import_("tandem.arrays").attr("host_array")(object, wanted.name(), wanted.columns);
     return by_buffer(rows, wanted).value();
+}
+
+GivenRows on_host(nb::handle object, const WantedRows& wanted) {
+    if (auto given = by_buffer(object, wanted)) return std::move(*given);
+    return by_host_array(object, wanted);
 }
 
 [[noreturn]] void throw_no_gpu(const WantedRows& wanted) {
@@ -250,10 +254,15 @@ std::optional<GivenRows> by_dlpack_of_last_type(nb::handle object, const WantedR
     return std::nullopt;
 }
 
-bool is_numpy_array(nb::handle object) {
+/// Type numpy.ndarray. Its subclasses, such as masked arrays, are for host_array to judge.
+nb::handle numpy_array() {
     static const auto type =
         nb::object(nb::module_::import_("numpy").attr("ndarray")).release(); // never freed
-    return PyObject_TypeCheck(object.ptr(), reinterpret_cast<PyTypeObject*>(type.ptr())) != 0;
+    return type;
+}
+
+bool is_numpy_array(nb::handle object) {
+    return PyObject_TypeCheck(object.ptr(), reinterpret_cast<PyTypeObject*>(numpy_array().ptr())) != 0;
 }
 
 } // namespace
@@ -273,7 +282,8 @@ std::optional<std::pair<int, int>> dlpack_device(const Device& device) {
 }
 
 GivenRows given_rows(nb::handle array, const WantedRows& wanted) {
-    if (is_numpy_array(array)) return on_host(array, wanted);
+    if (array.type().is(numpy_array())) return on_host(array, wanted);
+    if (is_numpy_array(array)) return by_host_array(array, wanted);
     if (auto given = by_exchange(array, wanted)) return std::move(*given);
     // Arrays on a GPU have no buffer, and JAX raises a slow exception for the query.
     if (!gpu_of(wanted.devices))

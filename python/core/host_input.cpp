@@ -18,43 +18,48 @@ Frame rest_frame(const Scene& scene) {
 }
 
 HostInput::HostInput(const Scene& scene, Precision precision)
-    : scene_(scene),
-      precision_(precision),
-      limit_(largest_coordinate(precision)),
-      frame_(rest_frame(scene)) {}
+    : scene_(scene), precision_(precision), limit_(largest_coordinate(precision)) {}
+
+void HostInput::take_unused() {
+    std::swap(frames_[0], frames_[1]); // in a loop, the answer of the last frame is still alive
+    if (!frames_[0] || frames_[0].use_count() > 1) frames_[0] = std::make_shared<Frame>(rest_frame(scene_));
+}
 
 /// The copy counts coordinates that are out of range. Only then the library's slower check runs, which throws
 /// the error message.
 const Frame& HostInput::frame(const FrameArrays& arrays) {
     out_of_range_ = 0;
+    take_unused();
+    auto& frame = *frames_.front();
     if (arrays.poses)
         set_poses(*arrays.poses);
     else
-        std::ranges::fill(frame_.poses, Pose{});
+        std::ranges::fill(frame.poses, Pose{});
     for (std::size_t body = 0; body < scene_.bodies.size(); ++body) {
         if (!scene_.bodies[body].deformable) continue;
         if (const auto* const given = arrays.vertices_of(body))
             set_vertices(body, *given);
         else
-            frame_.deformed[body] = scene_.meshes[scene_.bodies[body].mesh].vertices;
+            frame.deformed[body] = scene_.meshes[scene_.bodies[body].mesh].vertices;
     }
-    if (out_of_range_ > 0) check_range(scene_, frame_, precision_);
-    return frame_;
+    if (out_of_range_ > 0) check_range(scene_, frame, precision_);
+    return frame;
 }
 
 void HostInput::set_poses(const GivenRows& poses) {
+    auto& frame = *frames_.front();
     for (std::size_t body = 0; body < scene_.bodies.size(); ++body) {
         if (scene_.bodies[body].deformable) {
-            frame_.poses[body] = {};
+            frame.poses[body] = {};
             continue;
         }
-        frame_.poses[body] = pose_of_row(static_cast<const double*>(poses.data) + 7 * body, body);
-        for (const double x : frame_.poses[body].translation) out_of_range_ += !(std::abs(x) <= limit_);
+        frame.poses[body] = pose_of_row(static_cast<const double*>(poses.data) + 7 * body, body);
+        for (const double x : frame.poses[body].translation) out_of_range_ += !(std::abs(x) <= limit_);
     }
 }
 
 void HostInput::set_vertices(std::size_t body, const GivenRows& vertices) {
-    auto& points = frame_.deformed[body];
+    auto& points = frames_.front()->deformed[body];
     const auto count = vertices.rows;
     points.resize(count);
     static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double));

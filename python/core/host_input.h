@@ -3,6 +3,9 @@
 
 #include "python/core/frame_arrays.h"
 
+#include <array>
+#include <memory>
+
 namespace tandem::python {
 
 /// Rigid bodies have the identity as their pose, deformable bodies the vertices of their mesh.
@@ -14,19 +17,24 @@ public:
     /// `scene` must outlive it.
     HostInput(const Scene& scene, Precision precision);
 
-    /// A frame of arrays that pass check_rows. The next call overwrites it. Throws InputError for coordinates
-    /// that do not pass check_range, and for rows without a rotation.
+    /// A frame of arrays that pass check_rows. The next call but one overwrites it. Throws InputError for
+    /// coordinates that do not pass check_range, and for rows without a rotation.
     const Frame& frame(const FrameArrays& arrays);
+    /// The last frame, which later calls do not overwrite as long as somebody holds it.
+    std::shared_ptr<const Frame> last() const { return frames_.front(); }
 
 private:
+    /// Makes a frame that nobody else holds the first of frames_.
+    void take_unused();
     void set_poses(const GivenRows& poses);
     void set_vertices(std::size_t body, const GivenRows& vertices);
 
     const Scene& scene_;
     Precision precision_;
-    double limit_;                 ///< largest valid coordinate
-    Frame frame_;                  ///< its memory is reused for each frame
-    std::size_t out_of_range_ = 0; ///< number of coordinates of frame_ beyond limit_
+    double limit_; ///< largest valid coordinate
+    /// The last frame and one before it. Their memory is reused, unless an answer holds them.
+    std::array<std::shared_ptr<Frame>, 2> frames_;
+    std::size_t out_of_range_ = 0; ///< number of coordinates of the last frame beyond limit_
 };
 
 } // namespace tandem::python

@@ -3,7 +3,9 @@
 
 #include "python/core/arrays.h"
 #include "scenes/mesh.h"
+#include "scenes/read/read.h"
 
+#include <fmt/format.h>
 #include <nanobind/stl/string.h>
 
 namespace nb = nanobind;
@@ -23,6 +25,21 @@ Mesh mesh_of(const Points& vertices, const Corners& tetrahedra, const std::strin
     mesh.tetrahedra.assign(first, first + tetrahedra.shape(0));
     complete_mesh(mesh, name);
     return mesh;
+}
+
+Mesh parsed(const nb::bytes& data, const std::string& name) {
+    const std::string_view view(data.c_str(), data.size());
+    const nb::gil_scoped_release released;
+    auto mesh = parse_mesh(view, name);
+    mesh.name = name;
+    complete_mesh(mesh, name);
+    return mesh;
+}
+
+/// For pickling: the function and its arguments that make the mesh again.
+nb::tuple reduced(nb::handle self) {
+    return nb::make_tuple(nb::module_::import_("tandem.meshes").attr("make_mesh"),
+                          nb::make_tuple(self.attr("vertices"), self.attr("tetrahedra"), self.attr("name")));
 }
 
 } // namespace
@@ -47,11 +64,20 @@ void bind_meshes(nb::module_& module) {
                          return nb::ndarray<nb::numpy, const std::uint32_t, nb::shape<-1, 4>>(
                              rows.data(), {rows.size(), 4}, self);
                      })
+        .def("__reduce__", &reduced)
+        .def("__repr__",
+             [](const Mesh& self) {
+                 return fmt::format("<tandem.Mesh {}: {} vertices, {} tetrahedra>", self.name,
+                                    self.vertices.size(), self.tetrahedra.size());
+             })
         .def_ro("name", &Mesh::name)
         .def_ro("inverted", &Mesh::inverted)
         .def_ro("degenerate", &Mesh::degenerate);
     module.def("make_mesh", &mesh_of, nb::arg("vertices"), nb::arg("tetrahedra"), nb::arg("name"),
                "Implementation of tandem.make_mesh, which checks its input.");
+    module.def(
+        "parse_mesh", &parsed, nb::arg("data"), nb::arg("name"),
+        "Makes a mesh of the bytes of a file of read_mesh, except of TetGen's pairs. Raises ValueError.");
     module.def(
         "read_mesh", &read_mesh, nb::arg("path"), nb::call_guard<nb::gil_scoped_release>(),
         "Reads a tetrahedral mesh. Content and suffix determine the format: Gmsh .msh 2.2 and 4.1, Medit "

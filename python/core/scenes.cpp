@@ -59,6 +59,11 @@ void bind_scenes(nb::module_& module) {
         "Meshes, bodies and their motion, for a Collider to run frame by frame. meshes: a "
         "list of Mesh; bodies: the number of each body's mesh; deformable: numbers of the bodies "
         "with new vertices in every frame; frame_count: number of frames; key: name and parameters.")
+        .def("__repr__",
+             [](const Scene& self) {
+                 return fmt::format("<tandem.Scene {}: {} bodies, {} frames>", self.key, self.bodies.size(),
+                                    self.frame_count);
+             })
         .def_ro("key", &Scene::key)
         .def_ro("frame_count", &Scene::frame_count)
         .def_ro("meshes", &Scene::meshes)

@@ -19,25 +19,28 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ._core import DeviceError, Mesh, OutOfMemory, Scene, algorithms, devices, make_scene
-    from .collider import Answer, Collider, Contacts, Digest, Trial, make_mesh, read_mesh
+    from .collider import Answer, Collider, Contacts, Digest, Trial
     from .comparison import Comparison, compare
     from .lines import RecordError
+    from .meshes import make_mesh, read_mesh
     from .plots import plot_cells, plot_errors, plot_frames, plot_stages, plot_sweep
     from .records import Records, read
 
 _MODULES = {
     "_core": ("DeviceError", "Mesh", "OutOfMemory", "Scene", "algorithms", "devices", "make_scene"),
-    "collider": ("Answer", "Collider", "Contacts", "Digest", "Trial", "make_mesh", "read_mesh"),
+    "collider": ("Answer", "Collider", "Contacts", "Digest", "Trial"),
     "comparison": ("Comparison", "compare"),
     "lines": ("RecordError",),
+    "meshes": ("make_mesh", "read_mesh"),
     "plots": ("plot_cells", "plot_errors", "plot_frames", "plot_stages", "plot_sweep"),
     "records": ("Records", "read"),
 }
 _MODULE_OF = {name: module for module, names in _MODULES.items() for name in names}
 
+_NEED_COMPILED = ("_core", "collider", "meshes")
 _COMPILED = importlib.util.find_spec(f"{__name__}._core") is not None
 
-__all__ = sorted(name for name, module in _MODULE_OF.items() if _COMPILED or module not in ("_core", "collider"))
+__all__ = sorted(name for name, module in _MODULE_OF.items() if _COMPILED or module not in _NEED_COMPILED)
 __version__ = "0.1.0"
 
 
@@ -45,7 +48,7 @@ def __getattr__(name):
     if name not in _MODULE_OF:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     module = _MODULE_OF[name]
-    if module in ("_core", "collider") and not _COMPILED:
+    if module in _NEED_COMPILED and not _COMPILED:
         raise ImportError(f"tandem.{name} needs the compiled part of the package, which this installation does not have; "
                           "run `pip install .` in tandem's checkout on a machine with a compiler (python/README.md)")
     value = getattr(importlib.import_module(f".{module}", __name__), name)

@@ -49,6 +49,11 @@ class Mesh:
 def make_mesh(vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], tetrahedra: Annotated[NDArray[numpy.uint32], dict(shape=(None, 4), order='C', device='cpu', writable=False)], name: str) -> Mesh:
     """Implementation of tandem.make_mesh, which checks its input."""
 
+def parse_mesh(data: bytes, name: str) -> Mesh:
+    """
+    Makes a mesh of the bytes of a file of read_mesh, except of TetGen's pairs. Raises ValueError.
+    """
+
 def read_mesh(path: str) -> Mesh:
     """
     Reads a tetrahedral mesh. Content and suffix determine the format: Gmsh .msh 2.2 and 4.1, Medit .mesh, TetGen .node/.ele, legacy .vtk and .vtu. Raises ValueError with FILE:LINE.
@@ -119,6 +124,8 @@ class Answer:
 
     def pairs(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None, 4))]: ...
 
+    def meeting(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None, 4))]: ...
+
     def contacts(self) -> tuple: ...
 
     def pairs_on_device(self) -> Annotated[Any, dict(dtype='int32', shape=(None, 4))]: ...
@@ -138,7 +145,7 @@ class Collider:
 
     def __init__(self, meshes: Sequence[Mesh], options: ColliderOptions, owner: object | None) -> None: ...
 
-    def run(self, poses: object | None, vertices: object | None, next_poses: object | None, next_vertices: object | None) -> Answer | None:
+    def run(self, poses: object | None, vertices: object | None, next_poses: object | None, next_vertices: object | None, body_pairs: list[tuple[int, int]] | None) -> Answer | None:
         """
         Runs a frame. vertices, next_vertices: a list with one array per deformable body, or {number: array}. Returns None for any other container.
         """

@@ -9,7 +9,8 @@ import numpy
 
 from . import _core
 from ._core import Mesh
-from .arrays import host_array, stream_address
+from .arrays import stream_address
+from .meshes import mesh_of
 
 
 class Digest(NamedTuple):
@@ -95,8 +96,16 @@ class Answer:
         as long as an array over it. These libraries do not support OpenCL memory, for which `on_device` raises ValueError."""
         return self._core.pairs_on_device() if on_device else self._core.pairs()
 
+    def meeting(self) -> numpy.ndarray:
+        """Those of pairs() whose tetrahedra meet: (n, 4) int32, sorted. Candidate pairs have overlapping bounds, these have a common point of the closed
+        tetrahedra. The decision is exact for the vertices that the device has: moved and rounded in the collider's precision. It takes no contact rule
+        and no boundary faces, so that pairs inside of bodies are found too. It runs on the host, on all cores. Raises ValueError with
+        output="count" or "digest", with placement="exact", and if the frame was in memory of a device."""
+        return self._core.meeting()
+
     def contacts(self) -> Contacts:
-        """Contacts of the pairs (see Contacts), in host memory."""
+        """Contacts of the pairs (see Contacts), in host memory. The contact rule determines which pairs have some: the default, "opposing", needs
+        boundary faces of both tetrahedra, so that a body wholly inside another has none (docs/user/python.md)."""
         return Contacts(*self._core.contacts())
 
     def __repr__(self) -> str:
@@ -106,8 +115,8 @@ class Answer:
 class Collider:
     """Bodies of tetrahedral meshes on a device: uploaded, compiled and ready for any number of frames.
 
-    meshes: a list. Each element is a tandem.Mesh, the path of a mesh file, or (vertices, tetrahedra): (n, 3) float64 and (m, 4) integers.
-        They are copied. All meshes have the same unit of length.
+    meshes: a list. Each element is a tandem.Mesh, the path of a mesh file, (vertices, tetrahedra): (n, 3) float64 and (m, 4) integers, an object
+        with points and cells_dict (meshio.Mesh, pyvista.UnstructuredGrid), or the bytes of a mesh file. They are copied. All have the same unit of length.
     algorithm: one of tandem.algorithms(), or "auto": the fastest algorithm and settings on the first frame, or on the frame of tune(). Only
         settings that do not change the answer are tried.
     device: "host", "opencl:0", "cuda:0" as tandem.devices() lists them, or several that share a frame: "cuda:0+cuda:1".
@@ -134,11 +143,12 @@ class Collider:
                  deformable: bool | Iterable[int] = False, groups: Sequence[Iterable[int]] | None = None,
                  meets: Sequence[Iterable[int] | None] | None = None, never_meet: Iterable[Sequence[int]] = (),
                  self_collision: bool | str = False, preset: str = "", stream: Any = None, **settings: Any) -> None:
-        all_meshes = [_mesh(mesh, f"meshes[{i}]") for i, mesh in enumerate(_list(meshes, "meshes"))]
+        all_meshes = [mesh_of(mesh, f"meshes[{i}]") for i, mesh in enumerate(_list(meshes, "meshes"))]
         mesh_of_body = list(range(len(all_meshes)))
         if bodies is not None:
             mesh_of_body = [_number(value, f"bodies[{i}]") for i, value in enumerate(_list(bodies, "bodies"))]
         flags = _flags(deformable, len(mesh_of_body))
+        self._bodies = len(flags)
         self._deformable = [body for body, flag in enumerate(flags) if flag]
         for what, text in (("algorithm", algorithm), ("device", device), ("preset", preset)):
             if not isinstance(text, str):
@@ -149,16 +159,21 @@ class Collider:
             settings["self"] = "on" if self_collision is True else self_collision
         texts = {name: _text(value, name) for name, value in settings.items()}
         filters = list(zip(_bits_of_bodies(groups, "groups", 1, len(flags)), _bits_of_bodies(meets, "meets", 2**32 - 1, len(flags))))
-        apart = _body_pairs(never_meet, len(flags))
+        apart = _body_pairs(never_meet, "never_meet", len(flags))
         address = None if stream is None else stream_address(stream)
         options = _core.ColliderOptions(mesh_of_body, flags, algorithm, preset, device, texts, filters, apart, address)
         self._core = _core.Collider(all_meshes, options, stream)
+        self._arguments = {"algorithm": algorithm, "device": device, "bodies": mesh_of_body, "deformable": self._deformable, "groups": _lists(groups),
+                           "meets": _lists(meets), "never_meet": apart, "preset": preset, **texts}
 
-    def run(self, poses: Any = None, vertices: Any = None, *, next_poses: Any = None, next_vertices: Any = None) -> Answer:
+    def run(self, poses: Any = None, vertices: Any = None, *, next_poses: Any = None, next_vertices: Any = None,
+            body_pairs: Iterable[Sequence[int]] | None = None) -> Answer:
         """Finds the candidate pairs and contacts of a frame.
 
-        poses: (bodies, 7) numbers, rows tx ty tz qw qx qy qz: x_world = R(q) x_mesh + t, in the meshes' unit; q is normalised. None: the
-            identity for all bodies. Rows of deformable bodies are ignored.
+        poses: (bodies, 7) numbers, rows tx ty tz qw qx qy qz: x_world = R(q) x_mesh + t, in the meshes' unit; q is normalised. The real part is
+            first: an order xyzw, as of SciPy's as_quat(), is another rotation and no error, because its length is 1 too. Or, in host memory,
+            (bodies, 4, 4) matrices of a rotation and, in the last column, a translation. None: the identity for all bodies. Rows of deformable
+            bodies are ignored.
         vertices: world coordinates of deformable bodies: a list with one (n, 3) array for each of them, in their order, or {body: array}.
             None: the vertices of their meshes.
         next_poses, next_vertices: the frame's successor, which motion="linear" needs: at least one of them, in the forms of poses and vertices.
@@ -166,15 +181,18 @@ class Collider:
             bodies on straight lines, rigid bodies with straight translation and the shorter rotation at constant speed. Contacts are those
             of the frame. What is left out has the same default as in the frame, the identity or the vertices of the mesh, not the frame's own
             poses or vertices.
+        body_pairs: pairs of bodies to walk, in either order, instead of those that may overlap: from a broad phase of the caller. The collider's
+            groups, meets and never_meet do not apply to them. (n, n) needs self_collision.
 
         Arrays in host memory are NumPy arrays or objects with __dlpack__. Contiguous float64 arrays are uploaded without another copy. Arrays
         on the collider's GPU (CuPy, PyTorch, JAX; __dlpack__ or __cuda_array_interface__) are contiguous float64 or float32. Kernels read
         them in place, after the work that their library has enqueued and before this call returns. Both kinds may be mixed and give the same
         answer, bit for bit. With arrays on the GPU, body pairs are found on the device, whatever setting broad is. Raises ValueError or
         TypeError for wrong shapes, types and numbers that are not finite, tandem.DeviceError otherwise."""
-        answer = self._core.run(poses, vertices, next_poses, next_vertices)
+        pairs = None if body_pairs is None else sorted({(min(pair), max(pair)) for pair in _body_pairs(body_pairs, "body_pairs", self._bodies)})
+        answer = self._core.run(poses, vertices, next_poses, next_vertices, pairs)
         if answer is None:
-            answer = self._core.run(poses, self._by_body(vertices, "vertices"), next_poses, self._by_body(next_vertices, "next_vertices"))
+            answer = self._core.run(poses, self._by_body(vertices, "vertices"), next_poses, self._by_body(next_vertices, "next_vertices"), pairs)
         return Answer(answer)
 
     def tune(self, poses: Any = None, vertices: Any = None, seconds: float = 2.0, *, next_poses: Any = None, next_vertices: Any = None) -> list[Trial]:
@@ -194,6 +212,10 @@ class Collider:
     def contacts(self, poses: Any = None, vertices: Any = None, *, next_poses: Any = None, next_vertices: Any = None) -> Contacts:
         """run(...).contacts()."""
         return self.run(poses, vertices, next_poses=next_poses, next_vertices=next_vertices).contacts()
+
+    def meeting(self, poses: Any = None, vertices: Any = None) -> numpy.ndarray:
+        """run(...).meeting(): (n, 4) int32, sorted."""
+        return self.run(poses, vertices).meeting()
 
     def count(self, poses: Any = None, vertices: Any = None, *, next_poses: Any = None, next_vertices: Any = None) -> int:
         """run(...).count: the number of candidate pairs. With output="count" the pairs are not stored."""
@@ -222,6 +244,18 @@ class Collider:
         """Ids of the devices that share each frame."""
         return self._core.devices
 
+    @property
+    def arguments(self) -> dict[str, Any]:
+        """Keyword arguments that make an equal collider of the same meshes, without `stream`: Collider(meshes, **arguments). They and tandem.Mesh
+        can be pickled, a collider cannot."""
+        return dict(self._arguments)
+
+    def __reduce__(self) -> Any:
+        raise TypeError("a collider owns memory of devices and cannot be pickled or copied; pickle its meshes and `arguments`")
+
+    def __repr__(self) -> str:
+        return f"<tandem.Collider: {self._bodies} bodies, {self.algorithm} on {'+'.join(self.devices)}>"
+
     def _by_body(self, vertices, what):
         """{number: array} from any mapping or sequence of arrays; None: none. `what`: the name of the argument."""
         if vertices is None:
@@ -249,35 +283,13 @@ def _list(value, what):
         raise TypeError(f"{what}: type {type(value).__name__}; expected a list") from None
 
 
-def _mesh(mesh, what):
-    if isinstance(mesh, Mesh):
-        return mesh
-    if isinstance(mesh, (str, os.PathLike)):
-        return _core.read_mesh(os.fspath(mesh))
-    if isinstance(mesh, tuple) and len(mesh) == 2:
-        return make_mesh(*mesh, name=what)
-    raise TypeError(f"{what}: type {type(mesh).__name__}; expected a tandem.Mesh, a path or (vertices, tetrahedra)")
-
-
-def make_mesh(vertices: Any, tetrahedra: Any, name: str = "mesh") -> Mesh:
-    """Makes a Mesh of vertices, (n, 3) numbers, and tetrahedra, (m, 4) integers from 0; both are copied. Raises ValueError or TypeError, whose
-    one-line message begins with `name`."""
-    return _core.make_mesh(host_array(vertices, f"{name}: vertices", 3), host_array(tetrahedra, f"{name}: tetrahedra", 4, numpy.uint32), name)
-
-
-def read_mesh(path: str | os.PathLike[str]) -> Mesh:
-    """Reads a tetrahedral mesh. Content and suffix determine the format: Gmsh .msh 2.2 and 4.1, Medit .mesh, TetGen .node/.ele, legacy .vtk
-    and .vtu. Raises ValueError with FILE:LINE."""
-    return _core.read_mesh(os.fspath(path))
-
-
-def _number(value, what):
+def _number(value, what, of="mesh"):
     try:
         number = value.__index__()
     except AttributeError:
-        raise TypeError(f"{what}: type {type(value).__name__}; expected the number of a mesh") from None
+        raise TypeError(f"{what}: type {type(value).__name__}; expected the number of a {of}") from None
     if not 0 <= number < 2**32:
-        raise ValueError(f"{what}: {number} is not the number of a mesh; numbers start at 0")
+        raise ValueError(f"{what}: {number} is not the number of a {of}; numbers start at 0")
     return number
 
 
@@ -286,7 +298,7 @@ def _flags(deformable, bodies):
         return [bool(deformable)] * bodies
     flags = [False] * bodies
     for i, value in enumerate(_list(deformable, "deformable")):
-        number = _number(value, f"deformable[{i}]")
+        number = _number(value, f"deformable[{i}]", "body")
         if number >= bodies:
             raise ValueError(f"deformable[{i}]: {number} is not the number of a body; there are {bodies}, numbered from 0")
         flags[number] = True
@@ -313,14 +325,18 @@ def _bits(groups, what):
     return bits
 
 
-def _body_pairs(pairs, bodies):
+def _body_pairs(pairs, what, bodies):
     result = []
-    for i, pair in enumerate(_list(pairs, "never_meet")):
-        numbers = [_number(value, f"never_meet[{i}]") for value in _list(pair, f"never_meet[{i}]")]
+    for i, pair in enumerate(_list(pairs, what)):
+        numbers = [_number(value, f"{what}[{i}]", "body") for value in _list(pair, f"{what}[{i}]")]
         if len(numbers) != 2 or max(numbers) >= bodies:
-            raise ValueError(f"never_meet[{i}]: expected two bodies of {bodies}, numbered from 0")
+            raise ValueError(f"{what}[{i}]: expected two bodies of {bodies}, numbered from 0")
         result.append(tuple(numbers))
     return result
+
+
+def _lists(groups):
+    return None if groups is None else [None if one is None else list(one) for one in groups]
 
 
 def _text(value, name):

@@ -1,0 +1,165 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""collider_meeting.py PROGRAM SOURCE: the tetrahedra that meet, among the candidate pairs of tandem.Collider, equal the exact
+truth of tandem run; body pairs of the caller; poses as matrices; scenes far from the world's origin."""
+import json
+import sys
+import unittest
+
+import numpy
+
+from collider_case import DEVICES, POSES, ColliderCase, run_tandem, tandem
+from program import sets
+
+TETRAHEDRON = (numpy.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]]), numpy.array([[0, 1, 2, 3]]))
+IDENTITY = [0, 0, 0, 1, 0, 0, 0]
+
+
+def matrices(poses):
+    """4 x 4 matrices of rows tx ty tz qw qx qy qz."""
+    made = numpy.tile(numpy.eye(4), (len(poses), 1, 1))
+    for matrix, (*move, w, x, y, z) in zip(made, poses):
+        n = w * w + x * x + y * y + z * z
+        skew = numpy.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+        matrix[:3, :3] = numpy.eye(3) + 2 / n * (w * skew + skew @ skew)
+        matrix[:3, 3] = move
+    return made
+
+
+class Meeting(ColliderCase):
+    def test_equals_the_exact_truth(self):
+        texts = [" ".join(map(str, pose)) for pose in POSES]
+        for device in DEVICES:
+            for settings in ({"k": 6}, {"k": 18}, {"k": 6, "precision": "double"}):
+                with self.subTest(device=device, **settings):
+                    out = self.work / "truth.jsonl"
+                    out.unlink(missing_ok=True)
+                    status, text, errors = run_tandem("run", "--mesh", self.files[0], "--mesh", self.files[1], "--pose", texts[0], "--pose", texts[1], "--algorithm", "tiled",
+                                                      "--device", device, "--truth", "pairs", "--repeat", 1, "--out", out, *sets({**self.small("tiled"), **settings}))
+                    self.assertEqual((status, errors), (0, []), text)
+                    truth = json.loads(out.read_text().splitlines()[0])["error"]["truth"]
+                    answer = self.collider(device=device, **settings).run(POSES)
+                    meeting = answer.meeting()
+                    self.assertEqual((meeting.dtype, meeting.shape), (numpy.int32, (truth["touching"] + truth["overlapping"], 4)))
+                    self.assertEqual(answer.count, truth["candidates"])
+                    self.assertLess(len(meeting), answer.count, "some candidates do not meet")
+                    rows = [tuple(row) for row in meeting]
+                    self.assertEqual(rows, sorted(set(rows)))
+                    self.assertLessEqual(set(rows), set(map(tuple, answer.pairs())))
+                    self.assertLessEqual(set(map(tuple, answer.contacts().pairs)), set(rows))
+        self.assertTrue((self.collider().meeting(POSES) == self.collider(k=6).meeting(POSES)).all(), "independent of k")
+
+    def test_one_inside_another_touching_and_apart(self):
+        """A body wholly inside another has no contact by the default rule; bounds that overlap need not meet."""
+        cells = 3
+        steps = numpy.arange(cells + 1.0)
+        grid = numpy.array([(x, y, z) for x in steps for y in steps for z in steps])
+        corners = [((a * 4 + b) * 4 + c) for a in range(cells) for b in range(cells) for c in range(cells)]
+        cube = [(0, 16, 20, 21), (0, 16, 17, 21), (0, 1, 17, 21), (0, 1, 5, 21), (0, 4, 5, 21), (0, 4, 20, 21)]
+        block = (grid, numpy.array([[corner + offset for offset in tetrahedron] for corner in corners for tetrahedron in cube]))
+        small = (TETRAHEDRON[0] / 4, TETRAHEDRON[1])
+        inside = self.collider([block, small]).run([IDENTITY, [1.25, 1.5, 1.375, 1, 0, 0, 0]])
+        self.assertEqual(len(inside.contacts().pairs), 0)
+        self.assertGreater(len(inside.meeting()), 0)
+        two = self.collider([TETRAHEDRON] * 2, k=6)
+        for move, meets in (([1, 0, 0], True), ([0.5, 0.5, 0], True), ([numpy.nextafter(numpy.float32(1), numpy.float32(2)), 0, 0], False), ([0.75, 0.75, 0], False)):
+            with self.subTest(move=move):
+                answer = two.run([IDENTITY, [*move, 1, 0, 0, 0]])
+                self.assertEqual(answer.meeting().tolist(), [[0, 0, 1, 0]] if meets else [])
+        self.assertEqual(two.run([IDENTITY, [0.75, 0.75, 0, 1, 0, 0, 0]]).count, 1, "a candidate")
+
+    def test_older_answers_keep_their_frame(self):
+        collider = self.collider(deformable=[1])
+        away = self.meshes[1][0] + 100
+        answers = [collider.run(POSES[:1] * 2, [vertices]) for vertices in (self.meshes[1][0], away, away, self.meshes[1][0] + [0.25, 0, 0])]
+        numbers = [len(answer.meeting()) for answer in answers]
+        self.assertGreater(min(numbers[0], numbers[3]), 10)
+        self.assertEqual(numbers[1:3], [0, 0])
+        self.assertTrue((answers[0].meeting() == self.collider(deformable=[1]).meeting()).all())
+
+    def test_needs_pairs_and_the_frame(self):
+        with self.assertRaisesRegex(ValueError, "output=count keeps no pairs"):
+            self.collider(output="count").run(POSES).meeting()
+        with self.assertRaisesRegex(ValueError, "placement=exact"):
+            self.collider(placement="exact").run(POSES).meeting()
+        core = self.collider()._core
+        answer = tandem.Answer(core.run_device_input(numpy.array(POSES), []))
+        with self.assertRaisesRegex(ValueError, "was in memory of the device"):
+            answer.meeting()
+
+    def test_body_pairs_of_the_caller(self):
+        three = [self.meshes[0], self.meshes[1], self.meshes[0]]
+        poses = [*POSES, [0.25, 0, 0, 1, 0, 0, 0]]
+        for device in DEVICES:
+            for broad in ("tight", "device"):
+                collider = self.collider(three, device=device, broad=broad)
+                whole = collider.pairs(poses)
+                of = whole[:, [0, 2]]
+                for body_pairs in ([(1, 0)], [(0, 1), (1, 0), (2, 1)], numpy.array([[0, 2]]), []):
+                    with self.subTest(device=device, broad=broad, body_pairs=str(body_pairs)):
+                        kept = {tuple(sorted(map(int, pair))) for pair in body_pairs}
+                        expected = whole[[tuple(pair) in kept for pair in of.tolist()]]
+                        answer = collider.run(poses, body_pairs=body_pairs)
+                        self.assertEqual(answer.body_pairs, len(kept))
+                        self.assertEqual(answer.pairs().tolist(), expected.tolist())
+        for body_pairs, kind, words in (([(0, 3)], ValueError, r"body_pairs\[0\]: expected two bodies of 3"), ([(0, 1, 2)], ValueError, "expected two"), ([(0, 0.5)], TypeError, "number of a body"),
+                                        (5, TypeError, "body_pairs: type int"), ([(1, 1)], ValueError, "pair of body 1 with itself")):
+            with self.assertRaisesRegex(kind, words):
+                collider.run(poses, body_pairs=body_pairs)
+
+
+class Poses(ColliderCase):
+    def test_matrices(self):
+        quarter = [[0, 0, 0, 1, 0, 0, 0], [0.5, 0.25, 0, 1, 0, 0, 1], [0.25, 0, 0.125, 1, 1, 1, 1], [0.125, 0, 0, 0, 1, 0, 0]]  # exact in matrices
+        meshes = [self.meshes[i % 2] for i in range(4)]
+        collider = self.collider(meshes)
+        right = collider.run(quarter)
+        self.assertGreater(right.count, 100)
+        for given in (matrices(quarter), matrices(quarter).tolist(), list(matrices(quarter).astype(numpy.float32))):
+            self.assertEqual(collider.run(given).contact_digest(), right.contact_digest())
+        self.assertEqual(collider.run(matrices(quarter)).digest(), right.digest())
+        turned = matrices(POSES)
+        both = self.collider(precision="double")
+        points = [both.contacts(poses) for poses in (POSES, turned)]
+        self.assertTrue((points[0].pairs == points[1].pairs).all())
+        self.assertLess(abs(points[0].points - points[1].points).max(), 1e-14)
+
+    def test_every_rotation_keeps_its_digits(self):
+        from tandem.arrays import host_array
+        random = numpy.random.default_rng(7)
+        poses = random.normal(size=(2000, 7))
+        poses[:, 3:] *= 10.0 ** random.integers(-9, 1, size=(2000, 4))  # one component can be far larger than the others
+        poses[:, 3:] /= numpy.linalg.norm(poses[:, 3:], axis=1, keepdims=True)
+        rows = host_array(matrices(poses), "poses", 7)
+        signs = numpy.sign((rows[:, 3:] * poses[:, 3:]).sum(axis=1, keepdims=True))
+        self.assertLess(abs(rows[:, 3:] * signs - poses[:, 3:]).max(), 1e-15)
+        self.assertTrue((rows[:, :3] == poses[:, :3]).all())
+
+    def test_far_from_the_origin(self):
+        """Setting origin=auto takes the middle of the first frame, not that of the meshes."""
+        shift = 2.0 ** 20
+        far = numpy.array(POSES) + [shift, 0, -shift, 0, 0, 0, 0]
+        for device in DEVICES:
+            with self.subTest(device=device):
+                near = self.collider(device=device).run(POSES)
+                collider = self.collider(device=device, origin="auto")
+                for _ in range(2):
+                    answer = collider.run(far)
+                    self.assertEqual(answer.digest(), near.digest())
+                    self.assertTrue((answer.contacts().depths == near.contacts().depths).all())
+                    self.assertTrue((answer.contacts().points == near.contacts().points + [shift, 0, -shift]).all())
+                    self.assertTrue((answer.meeting() == near.meeting()).all())
+                self.assertNotEqual(self.collider(device=device).run(far).contact_digest().count, 0)
+                self.assertFalse((self.collider(device=device).run(far).contacts().depths[:3] == near.contacts().depths[:3]).all(), "the world's origin loses digits")
+                collider.reset()
+                self.assertEqual(collider.run(POSES).contact_digest(), self.collider(device=device, origin="auto").run(POSES).contact_digest())
+                soft = self.collider(device=device, origin="auto", deformable=True)
+                moved = [points + [shift, 0, 0] for points, _ in self.meshes]
+                self.assertTrue((soft.contacts(vertices=moved).depths == self.collider(device=device).contacts().depths).all())
+        held = self.collider(origin="auto")
+        device_answer = tandem.Answer(held._core.run_device_input(numpy.array(far), []))
+        self.assertTrue((device_answer.contacts().depths == near.contacts().depths).all())
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=1)
