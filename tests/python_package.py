@@ -11,7 +11,6 @@ import lzma
 import math
 import os
 import pathlib
-import re
 import shutil
 import subprocess
 import sys
@@ -55,6 +54,17 @@ def setUpModule():
 
 def tearDownModule():
     FOLDER.cleanup()
+
+
+class Metadata(unittest.TestCase):
+    def test_the_distribution_has_a_name_of_its_own(self):
+        """PyPI has another distribution tandem."""
+        wheel, = pathlib.Path(FOLDER.name).glob("*.whl")
+        self.assertTrue(wheel.name.startswith("tandem_bvh-"), wheel.name)
+        names = zipfile.ZipFile(wheel).namelist()
+        self.assertIn("tandem/__init__.py", names)
+        metadata, = (name for name in names if name.endswith("/METADATA"))
+        self.assertIn("\nName: tandem-bvh\n", zipfile.ZipFile(wheel).read(metadata).decode())
 
 
 def text_of(value):
