@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from .collider import Answer, Collider, Contacts, Digest, Trial
     from .comparison import Comparison, compare
     from .lines import RecordError
+    from .frames import write_frames
     from .meshes import make_mesh, read_mesh
     from .plots import plot_cells, plot_errors, plot_frames, plot_stages, plot_sweep
     from .records import Records, read
@@ -30,6 +31,7 @@ _MODULES = {
     "_core": ("DeviceError", "Mesh", "OutOfMemory", "Scene", "algorithms", "devices", "make_scene"),
     "collider": ("Answer", "Collider", "Contacts", "Digest", "Trial"),
     "comparison": ("Comparison", "compare"),
+    "frames": ("write_frames",),
     "lines": ("RecordError",),
     "meshes": ("make_mesh", "read_mesh"),
     "plots": ("plot_cells", "plot_errors", "plot_frames", "plot_stages", "plot_sweep"),
@@ -37,7 +39,7 @@ _MODULES = {
 }
 _MODULE_OF = {name: module for module, names in _MODULES.items() for name in names}
 
-_NEED_COMPILED = ("_core", "collider", "meshes")
+_NEED_COMPILED = ("_core", "collider", "frames", "meshes")
 _COMPILED = importlib.util.find_spec(f"{__name__}._core") is not None
 
 __all__ = sorted(name for name, module in _MODULE_OF.items() if _COMPILED or module not in _NEED_COMPILED)

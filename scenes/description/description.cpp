@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/builtin.h"
 #include "scenes/description/describe_dynamics.h"
+#include "scenes/description/series.h"
 #include "base/digest.h"
 #include "scenes/digest.h"
 #include "base/error.h"
@@ -28,13 +29,14 @@ Eigen::Quaterniond quaternion(double w, double x, double y, double z, const Json
     return unit(Eigen::Quaterniond(w, x, y, z));
 }
 
-/// Motion of one body: a start with a velocity and a spin per frame, or a list of poses.
+/// Motion of one body: a start with a velocity and a spin per frame, a list of poses, or vertices from files.
 struct Motion {
     Pose start;
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
     double spin = 0;
     std::vector<Pose> poses;
+    std::shared_ptr<const Series> series; ///< null: the body is rigid
 
     Pose at(std::size_t frame) const {
         if (!poses.empty()) return poses[frame];
@@ -102,6 +104,21 @@ Motion read_motion(const Json& json, const JsonLocation& location, std::size_t f
     return motion;
 }
 
+std::shared_ptr<const Series> read_series(const Json& json, const JsonLocation& location, const Mesh& mesh,
+                                          std::size_t frames) {
+    for (const auto* name : {"fixed", "position", "rotation", "velocity", "spin", "poses"})
+        if (json.contains(name)) (location / name).fail("is replaced by series; leave one out");
+    const auto& files = json["series"];
+    const auto place = location / "series";
+    if (!files.is_array() || files.size() != frames)
+        place.fail(fmt::format("must be one mesh file a frame, {} in all", frames));
+    std::vector<std::string> paths;
+    for (std::size_t i = 0; i < frames; ++i)
+        paths.push_back(
+            (std::filesystem::path(location.file).parent_path() / text(files[i], place / i)).string());
+    return std::make_shared<const Series>(std::move(paths), mesh);
+}
+
 /// The bits of a list of groups.
 std::uint32_t read_groups(const Json& json, const JsonLocation& location) {
     if (!json.is_array()) location.fail("must be an array of groups");
@@ -114,8 +131,8 @@ std::uint32_t read_groups(const Json& json, const JsonLocation& location) {
 Body read_body(const Json& json, const JsonLocation& location,
                const std::map<std::string, std::uint32_t>& meshes) {
     check_names(json, location,
-                {"mesh", "fixed", "position", "rotation", "velocity", "spin", "poses", "material", "elastic",
-                 "groups", "meets"});
+                {"mesh", "fixed", "position", "rotation", "velocity", "spin", "poses", "series", "material",
+                 "elastic", "groups", "meets"});
     if (!json.contains("mesh")) location.fail("has no mesh");
     const auto name = text(json["mesh"], location / "mesh");
     std::vector<std::string> names;
@@ -123,7 +140,8 @@ Body read_body(const Json& json, const JsonLocation& location,
     for (const auto& [known, index] : meshes) names.push_back(known);
     const auto found = meshes.find(name);
     if (found == meshes.end()) (location / "mesh").fail(unknown("mesh", name, names));
-    Body body{.mesh = found->second, .fixed = flag(json, "fixed", location), .deformable = false};
+    Body body{
+        .mesh = found->second, .fixed = flag(json, "fixed", location), .deformable = json.contains("series")};
     if (body.fixed && (json.contains("velocity") || json.contains("spin") || json.contains("poses")))
         location.fail("is fixed and moves; leave one out");
     if (json.contains("groups")) body.groups = read_groups(json["groups"], location / "groups");
@@ -150,7 +168,10 @@ void read_never_meet(const Json& json, const JsonLocation& location, Scene& scen
 Frame frame_of(const std::vector<Motion>& motions, std::size_t index) {
     Frame frame;
     frame.deformed.resize(motions.size());
-    for (const auto& motion : motions) frame.poses.push_back(motion.at(index));
+    for (std::size_t body = 0; body < motions.size(); ++body) {
+        frame.poses.push_back(motions[body].at(index));
+        if (motions[body].series) frame.deformed[body] = motions[body].series->vertices(index);
+    }
     return frame;
 }
 
@@ -168,7 +189,11 @@ std::vector<Motion> read_bodies(const Json& json, const JsonLocation& root, Scen
     std::vector<Motion> motions;
     for (std::size_t i = 0; i < json["bodies"].size(); ++i) {
         scene.bodies.push_back(read_body(json["bodies"][i], root / "bodies" / i, meshes));
-        motions.push_back(read_motion(json["bodies"][i], root / "bodies" / i, scene.frame_count));
+        const auto& body = json["bodies"][i];
+        motions.push_back(read_motion(body, root / "bodies" / i, scene.frame_count));
+        if (body.contains("series"))
+            motions.back().series = read_series(body, root / "bodies" / i,
+                                                scene.meshes[scene.bodies.back().mesh], scene.frame_count);
     }
     return motions;
 }
@@ -194,12 +219,17 @@ Scene load_description(const std::string& path) {
     scene.key = fmt::format("{}:frames={},bodies={:016x}", scene.name, scene.frame_count,
                             digest_of(json["bodies"].dump()));
     if (json.contains("dynamics")) {
+        for (std::size_t i = 0; i < motions.size(); ++i)
+            if (motions[i].series)
+                (root / "bodies" / i / "series").fail("has no place beside dynamics; leave one out");
         Frame start = frame_of(motions, 0);
         scene.dynamics = read_dynamics(json, root, scene, start);
         scene.frame = [start = std::move(start)](std::size_t) { return start; };
         scene.key += fmt::format(",dynamics={:016x}", digest_of(json["dynamics"].dump()));
     } else {
         refuse_dynamics(json, root);
+        for (const auto& motion : motions)
+            if (motion.series) scene.key += fmt::format(",series={:016x}", motion.series->digest());
         scene.frame = [motions](std::size_t index) { return frame_of(motions, index); };
     }
     scene.digest = digest_of(scene);
