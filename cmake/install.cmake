@@ -47,7 +47,7 @@ if(embree_FOUND)
 endif()
 file(WRITE ${PROJECT_BINARY_DIR}/tandem-config.cmake "include(CMakeFindDependencyMacro)
 list(APPEND CMAKE_MODULE_PATH \${CMAKE_CURRENT_LIST_DIR})
-foreach(package Eigen3 fmt nlohmann_json OpenCL ZLIB Threads TBB GMP)
+foreach(package Eigen3 fmt nlohmann_json OpenCL ZLIB LibLZMA LZ4 Threads TBB GMP)
   find_dependency(\${package})
 endforeach()
 ${embree_dependency}${mpi_dependency}include(\${CMAKE_CURRENT_LIST_DIR}/tandem-targets.cmake)
@@ -63,7 +63,7 @@ endforeach()
 ")
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/tandem-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/tandem-config.cmake ${PROJECT_BINARY_DIR}/tandem-config-version.cmake
-              cmake/FindGMP.cmake
+              cmake/FindGMP.cmake cmake/FindLZ4.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/tandem)
 
 # pkg-config's file names the libraries of a static link. cmake --install --prefix changes the folder, so that it is configured then.

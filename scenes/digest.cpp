@@ -16,6 +16,12 @@ void add(Digester& digester, const Mesh& mesh) {
     for (const auto& v : mesh.vertices) add(digester, v);
     for (const auto& t : mesh.tetrahedra)
         for (const auto vertex : t) digester.add(std::uint64_t{vertex});
+    // Meshes without them keep the digest of the time before them.
+    for (const auto* list : {&mesh.merged, &mesh.welded}) {
+        if (list->empty()) continue;
+        digester.add(std::uint64_t{list->size()});
+        for (const auto number : *list) digester.add(std::uint64_t{number});
+    }
 }
 
 void add(Digester& digester, const Frame& frame) {

@@ -9,7 +9,7 @@
 
 namespace tandem {
 
-/// A face of a tetrahedron: its vertices in ascending order, and its source.
+/// A face of a tetrahedron: its vertices in the topology in ascending order, and its source.
 struct Face {
     std::array<std::uint32_t, 3> vertices;
     std::uint32_t tetrahedron;

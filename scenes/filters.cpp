@@ -2,6 +2,7 @@
 #include "scenes/scene.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace tandem {
 
@@ -11,6 +12,14 @@ bool may_meet(const Scene& scene, std::uint32_t a, std::uint32_t b) {
     if (one.fixed && other.fixed) return false;
     if (a != b && ((one.groups & other.meets) == 0 || (other.groups & one.meets) == 0)) return false;
     return !std::ranges::binary_search(scene.never_meet, std::array{std::min(a, b), std::max(a, b)});
+}
+
+std::vector<std::uint32_t> skipped_in(const Scene& scene, const Frame& frame, std::size_t body) {
+    const auto& merged = scene.meshes[scene.bodies[body].mesh].merged;
+    if (frame.skipped.empty()) return merged;
+    std::vector<std::uint32_t> both;
+    std::ranges::set_union(merged, frame.skipped[body], std::back_inserter(both));
+    return both;
 }
 
 bool has_filters(const Scene& scene) {

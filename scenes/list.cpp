@@ -84,6 +84,12 @@ void refuse_other_files(std::string_view specification) {
                                          specification));
 }
 
+/// Connects the meshes of a kind anew, where that may differ from how the kind connects them.
+void connect(Scene& scene, const MeshReading& reading) {
+    if (reading.duplicates == Duplicates::merge && !reading.weld) return;
+    for (auto& mesh : scene.meshes) complete_mesh(mesh, mesh.name, reading);
+}
+
 } // namespace
 
 std::span<const SceneKind> scene_kinds() {
@@ -93,10 +99,10 @@ std::span<const SceneKind> scene_kinds() {
     return kinds;
 }
 
-Scene make_scene(std::string_view specification) {
+Scene make_scene(std::string_view specification, const MeshReading& reading) {
     refuse_other_files(specification);
-    if (specification.ends_with(".json")) return load_description(std::string(specification));
-    if (specification.ends_with(".frames")) return load_recording(std::string(specification));
+    if (specification.ends_with(".json")) return load_description(std::string(specification), reading);
+    if (specification.ends_with(".frames")) return load_recording(std::string(specification), reading);
     const bool hard = specification.starts_with("hard:");
     const auto name = specification.substr(0, specification.find(':', hard ? 5 : 0));
     if (hard) hard_family(name.substr(5));
@@ -110,6 +116,8 @@ Scene make_scene(std::string_view specification) {
         auto scene = kind.make(parameters);
         scene.name = kind.name;
         scene.key = key_of(kind.name, parameters);
+        scene.reading = reading;
+        connect(scene, reading);
         scene.digest = digest_of(scene);
         return scene;
     }

@@ -3,9 +3,13 @@
 
 #include "base/error.h"
 #include "scenes/faces.h"
+#include "scenes/weld.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <span>
 
 namespace tandem {
 
@@ -20,21 +24,111 @@ double determinant(const Mesh& mesh, const Tetrahedron& t) {
            + a.z() * (b.x() * c.y() - b.y() * c.x());
 }
 
-/// A face of only one tetrahedron is on the boundary.
-void flag_boundary(Mesh& mesh) {
-    mesh.boundary.assign(mesh.tetrahedra.size(), 0);
-    const auto faces = sorted_faces(mesh);
-    for (std::size_t i = 0; i < faces.size(); ++i) {
-        const bool before = i > 0 && faces[i - 1].vertices == faces[i].vertices;
-        const bool after = i + 1 < faces.size() && faces[i + 1].vertices == faces[i].vertices;
-        if (!before && !after)
-            mesh.boundary[faces[i].tetrahedron] |= static_cast<std::uint8_t>(1u << faces[i].corner);
+/// A tetrahedron, and the first one with the same vertices.
+struct Duplicate {
+    std::uint32_t tetrahedron, first;
+};
+
+/// Calls visit(copies) for every face, with its copies in all tetrahedra.
+template<class Visit>
+void for_faces(std::span<const Face> sorted, Visit visit) {
+    while (!sorted.empty()) {
+        const auto end = std::ranges::find_if(
+            sorted, [&](const Face& face) { return face.vertices != sorted.front().vertices; });
+        const auto copies = sorted.first(static_cast<std::size_t>(end - sorted.begin()));
+        visit(copies);
+        sorted = sorted.subspan(copies.size());
     }
+}
+
+/// Duplicates share all faces. Each is found at the one that is opposite its largest vertex.
+std::vector<Duplicate> duplicates_of(const Mesh& mesh, std::span<const Face> faces) {
+    std::vector<Duplicate> found;
+    std::vector<std::array<std::uint32_t, 2>> same; // opposite vertex, tetrahedron
+    for_faces(faces, [&](std::span<const Face> copies) {
+        if (copies.size() < 2) return;
+        same.clear();
+        for (const auto& face : copies) {
+            const auto opposite = joined(mesh, mesh.tetrahedra[face.tetrahedron][face.corner]);
+            if (opposite >= face.vertices[2]) same.push_back({opposite, face.tetrahedron});
+        }
+        std::ranges::sort(same);
+        const auto repeated = std::ranges::unique(same); // a tetrahedron that has its largest vertex twice
+        same.erase(repeated.begin(), repeated.end());
+        for (std::size_t i = 1, first = 0; i < same.size(); ++i) {
+            if (same[i][0] != same[first][0]) first = i;
+            if (i != first) found.push_back({same[i][1], same[first][1]});
+        }
+    });
+    std::ranges::sort(found, {}, &Duplicate::tetrahedron);
+    return found;
+}
+
+/// Copies the boundary faces of a tetrahedron to its duplicate, whose corners may be in another order.
+void copy_boundary(Mesh& mesh, const Duplicate& duplicate) {
+    const auto from = joined(mesh, mesh.tetrahedra[duplicate.first]);
+    const auto to = joined(mesh, mesh.tetrahedra[duplicate.tetrahedron]);
+    for (std::size_t i = 0; i < 4; ++i) {
+        const auto corner = std::ranges::find(from, to[i]) - from.begin();
+        if ((mesh.boundary[duplicate.first] >> corner & 1) != 0)
+            mesh.boundary[duplicate.tetrahedron] |= static_cast<std::uint8_t>(1u << i);
+    }
+}
+
+/// A face of only one tetrahedron is on the boundary; duplicates do not count.
+void flag_boundary(Mesh& mesh, std::span<const Face> faces, std::span<const Duplicate> duplicates) {
+    std::vector<bool> counts(mesh.tetrahedra.size(), true);
+    for (const auto& duplicate : duplicates) counts[duplicate.tetrahedron] = false;
+    mesh.boundary.assign(mesh.tetrahedra.size(), 0);
+    for_faces(faces, [&](std::span<const Face> copies) {
+        const auto is_counted = [&](const Face& face) { return counts[face.tetrahedron]; };
+        if (std::ranges::count_if(copies, is_counted) != 1) return;
+        const auto& face = *std::ranges::find_if(copies, is_counted);
+        mesh.boundary[face.tetrahedron] |= static_cast<std::uint8_t>(1u << face.corner);
+    });
+}
+
+/// Fills welded, merged and boundary.
+void connect(Mesh& mesh, const std::string& source, const MeshReading& reading) {
+    mesh.welded.clear();
+    mesh.merged.clear();
+    mesh.findings.welded = 0;
+    if (reading.weld) {
+        mesh.welded = welded_vertices(mesh.vertices, *reading.weld);
+        for (std::uint32_t v = 0; v < mesh.welded.size(); ++v)
+            mesh.findings.welded += mesh.welded[v] == v ? 0 : 1;
+        if (mesh.findings.welded == 0) mesh.welded.clear();
+    }
+    const auto faces = sorted_faces(mesh);
+    const auto duplicates = duplicates_of(mesh, faces);
+    mesh.findings.duplicates = duplicates.size();
+    if (reading.duplicates == Duplicates::reject && !duplicates.empty())
+        throw InputError(fmt::format(
+            "{}: {} of {} tetrahedra have the vertices of an earlier one, such as {} those of {}; "
+            "repair the mesh, or choose --duplicates merge or keep",
+            source, duplicates.size(), mesh.tetrahedra.size(), duplicates[0].tetrahedron,
+            duplicates[0].first));
+    flag_boundary(mesh, faces, duplicates);
+    for (const auto& duplicate : duplicates)
+        if (reading.duplicates == Duplicates::merge)
+            mesh.merged.push_back(duplicate.tetrahedron);
+        else
+            copy_boundary(mesh, duplicate);
 }
 
 } // namespace
 
-void complete_mesh(Mesh& mesh, const std::string& source) {
+Tetrahedron joined(const Mesh& mesh, const Tetrahedron& tetrahedron) {
+    Tetrahedron result = tetrahedron;
+    for (auto& vertex : result) vertex = joined(mesh, vertex);
+    return result;
+}
+
+bool is_merged(const Mesh& mesh, std::uint32_t tetrahedron) {
+    return std::ranges::binary_search(mesh.merged, tetrahedron);
+}
+
+void complete_mesh(Mesh& mesh, const std::string& source, const MeshReading& reading) {
     if (mesh.tetrahedra.empty())
         throw InputError(fmt::format("{}: no tetrahedra; give a volume mesh", source));
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
@@ -46,7 +140,25 @@ void complete_mesh(Mesh& mesh, const std::string& source) {
                 throw InputError(fmt::format("{}: tetrahedron {} names vertex {} of {}; repair the mesh",
                                              source, t, vertex, mesh.vertices.size()));
     count_flawed(mesh);
-    flag_boundary(mesh);
+    connect(mesh, source, reading);
+}
+
+std::string findings_text(const Mesh& mesh) {
+    const auto& found = mesh.findings;
+    std::vector<std::string> parts;
+    const auto add = [&](std::size_t count, std::string_view text) {
+        if (count > 0) parts.push_back(fmt::format(fmt::runtime(text), count));
+    };
+    add(found.duplicates, mesh.merged.empty()
+                              ? "{} tetrahedra have the vertices of an earlier one and are kept"
+                              : "{} tetrahedra have the vertices of an earlier one and take no part");
+    if (mesh.welded.empty())
+        add(found.coincident, "{} vertices lie where an earlier one lies (--weld 0 joins them)");
+    add(found.welded, "{} vertices are welded to an earlier one");
+    add(found.ghosts, "{} ghost cells are left out");
+    add(found.reduced, "{} tetrahedra of higher order are read by their corners");
+    add(found.other_cells, "{} volume cells that are not tetrahedra are left out");
+    return fmt::format("{}", fmt::join(parts, "; "));
 }
 
 void count_flawed(Mesh& mesh) {
@@ -60,7 +172,8 @@ void count_flawed(Mesh& mesh) {
 
 double volume(const Mesh& mesh) {
     double sum = 0;
-    for (const auto& t : mesh.tetrahedra) sum += std::abs(determinant(mesh, t));
+    for (std::uint32_t t = 0; t < mesh.tetrahedra.size(); ++t)
+        if (!is_merged(mesh, t)) sum += std::abs(determinant(mesh, mesh.tetrahedra[t]));
     return sum / 6;
 }
 

@@ -44,6 +44,6 @@ TANDEM_SCENE_KINDS(TANDEM_DECLARE_KIND)
 #undef TANDEM_DECLARE_KIND
 
 /// Reads a scene description in JSON (scenes/scene.schema.json); paths of mesh files are relative to it.
-Scene load_description(const std::string& path);
+Scene load_description(const std::string& path, const MeshReading& reading = {});
 
 } // namespace tandem

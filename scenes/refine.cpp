@@ -9,6 +9,7 @@
 #include <limits>
 #include <span>
 #include <string_view>
+#include <unordered_map>
 
 namespace tandem {
 
@@ -86,6 +87,22 @@ std::array<std::uint32_t, 10> points_of(const Tetrahedron& t, std::span<const st
     return numbers;
 }
 
+/// Children of merged tetrahedra are merged. Midpoints are welded when the ends of their edges are.
+void refine_topology(const Mesh& mesh, std::span<const std::uint64_t> keys, Mesh& fine) {
+    for (const auto t : mesh.merged)
+        for (std::uint32_t child = 0; child < children.size(); ++child)
+            fine.merged.push_back(static_cast<std::uint32_t>(children.size()) * t + child);
+    if (mesh.welded.empty()) return;
+    fine.welded = mesh.welded;
+    std::unordered_map<std::uint64_t, std::uint32_t> firsts;
+    for (const auto key : keys) {
+        const auto number = static_cast<std::uint32_t>(fine.welded.size());
+        const auto ends = key_of(joined(mesh, static_cast<std::uint32_t>(key >> 32)),
+                                 joined(mesh, static_cast<std::uint32_t>(key & most)));
+        fine.welded.push_back(firsts.try_emplace(ends, number).first->second);
+    }
+}
+
 Mesh refined_once(const Mesh& mesh) {
     const auto keys = edges_of(mesh);
     check_count(mesh.vertices.size() + keys.size(), "vertices", mesh.name);
@@ -104,6 +121,8 @@ Mesh refined_once(const Mesh& mesh) {
             fine.boundary.push_back(child_boundary(child, mesh.boundary[t]));
         }
     }
+    refine_topology(mesh, keys, fine);
+    fine.findings = mesh.findings;
     return fine;
 }
 

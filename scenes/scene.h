@@ -53,6 +53,7 @@ struct Scene {
     std::function<double(std::size_t)> time;  ///< time of frame i in s; null: frames have no times
     std::string end;          ///< message for frames after the last of a recording; empty in other scenes
     std::uint64_t digest = 0; ///< digest of meshes, bodies and motion; equal on every machine
+    MeshReading reading{};    ///< how its mesh files were read
     /// In a subscene, the number of each body in the whole scene, ascending. Empty in a whole scene.
     std::vector<std::uint32_t> numbers{};
 };
@@ -68,6 +69,10 @@ bool may_meet(const Scene& scene, std::uint32_t a, std::uint32_t b);
 
 /// Whether groups or `never_meet` keep any two bodies apart.
 bool has_filters(const Scene& scene);
+
+/// The tetrahedra of a body that take no part in a frame: those that it skips, and merged duplicates;
+/// ascending.
+std::vector<std::uint32_t> skipped_in(const Scene& scene, const Frame& frame, std::size_t body);
 
 /// A named parameter of a scene with its value; in a SceneKind, its default.
 struct SceneParameter {
@@ -87,11 +92,13 @@ struct SceneKind {
 std::span<const SceneKind> scene_kinds();
 
 /// "NAME", "NAME:par=value,par=value", or the path of a scene description (.json) or of a recording
-/// (.frames). Throws InputError.
-Scene make_scene(std::string_view specification);
+/// (.frames). `reading` holds for mesh files, and its duplicates and welding for all meshes. Throws
+/// InputError.
+Scene make_scene(std::string_view specification, const MeshReading& reading = {});
 
 /// A scene with one body per mesh file. poses[i] belongs to files[i]; missing poses are the identity.
-Scene scene_from_meshes(std::span<const std::string> files, std::span<const Pose> poses);
+Scene scene_from_meshes(std::span<const std::string> files, std::span<const Pose> poses,
+                        const MeshReading& reading = {});
 
 std::size_t vertex_count(const Scene& scene);
 std::size_t tetrahedron_count(const Scene& scene);

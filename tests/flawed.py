@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: MIT
 """flawed.py PROGRAM SOURCE: tetrahedra of zero volume, numbers that are not finite, and a truth too large for
 memory."""
+import json
 import sys
 import unittest
 
-from program import LONG, Case, gmsh, tandem
+from program import LONG, Case, bar, gmsh, tandem
 
 
 class Flawed(Case):
@@ -49,6 +50,50 @@ class Flawed(Case):
         self.bad("--degenerate some: give flat, skip or reject", "run", "plates", "--degenerate", "some")
         self.bad("--set degenerate=skip: degenerate is no setting of a cell but of the frames, for all cells; give --degenerate skip", "run", "plates", "--set",
                  "degenerate=skip")
+
+    def pairs_of(self, *arguments):
+        """Pairs and contacts, the lines on standard error, and scene.reading of the record."""
+        pairs, contacts, out = (self.work / name for name in ("pairs.csv", "contacts.csv", "reading.jsonl"))
+        out.unlink(missing_ok=True)
+        status, text, errors = tandem("run", *arguments, "--device", "host", "--repeat", 1, "--dump-pairs", pairs, "--dump-contacts", contacts, "--out", out)
+        self.assertEqual(status, 0, errors)
+        self.assertIn(": right: ", text)
+        return sorted(pairs.read_text().splitlines()), sorted(contacts.read_text().splitlines()), errors, self.records(out)[0]["scene"]["reading"]
+
+    def test_duplicates_and_torn_meshes(self):
+        """A folded bar once, with each tetrahedron twice, and torn into tetrahedra of their own, on all algorithms, beside itself and with itself."""
+        points, tets = bar(4, (0, 0, 0))
+        points = [(abs(x - 1.5), y + x / 16, z) for x, y, z in points]  # folded, so that it meets itself
+        whole = gmsh(self.work / "whole.msh", points, tets)
+        twice = gmsh(self.work / "twice.msh", points, [*tets, *([d, b, a, c] for a, b, c, d in tets)])
+        torn = gmsh(self.work / "torn.msh", [points[v] for tet in tets for v in tet], [list(range(4 * t, 4 * t + 4)) for t in range(len(tets))])
+        poses = ("--pose", "0 0 0 1 0 0 0", "--pose", "0.3 0.2 0.1 1 0 0 0")
+        more = 4 * len(tets) - len(points)
+        for algorithm in (one["name"] for one in json.loads(tandem("algorithms", "--json")[1]) if not one["baseline"]):
+            with self.subTest(algorithm):
+                cell = (*poses, "--algorithm", algorithm, "--set", "self=on")
+                right = self.pairs_of("--mesh", whole, "--mesh", whole, *cell)
+                self.assertEqual(right[2], [])
+                self.assertTrue(any(row.split(",")[1] == row.split(",")[3] for row in right[0][1:]), "no pair of one body")
+                merged = self.pairs_of("--mesh", twice, "--mesh", twice, *cell)
+                self.assertEqual(merged[:3], (*right[:2], [f"tandem: mesh twice: {len(tets)} tetrahedra have the vertices of an earlier one and take no part"]))
+                self.assertEqual((merged[3]["handling"], merged[3]["duplicates"], merged[3]["weld"]), ("merge", 2 * len(tets), None))
+                kept = self.pairs_of("--mesh", twice, "--mesh", twice, *cell, "--duplicates", "keep")
+                self.assertEqual(len([row for row in kept[0] if row.split(",")[1] != row.split(",")[3]]) - 1,
+                                 4 * (len([row for row in right[0] if row.split(",")[1] != row.split(",")[3]]) - 1))
+                welded = self.pairs_of("--mesh", torn, "--mesh", torn, *cell, "--weld", 0)
+                self.assertEqual(welded[:3], (*right[:2], [f"tandem: mesh torn: {more} vertices are welded to an earlier one"]))
+                self.assertEqual((welded[3]["weld"], welded[3]["welded"]), (0, 2 * more))
+                apart = self.pairs_of("--mesh", torn, "--mesh", torn, *cell)
+                self.assertNotEqual(apart[:2], right[:2])
+                self.assertEqual(apart[2], [f"tandem: mesh torn: {more} vertices lie where an earlier one lies (--weld 0 joins them)"])
+        for command in ("run", "check", "accuracy", "export"):
+            words = ("--vtu", self.work / "vtu") if command == "export" else ("--device", "host")
+            self.bad([f"{len(tets)} of {2 * len(tets)} tetrahedra have the vertices of an earlier one, such as 24 those of 0"], command, "--mesh", twice,
+                     "--duplicates", "reject", *words)
+        self.bad("--duplicates some: give merge, keep or reject", "run", "plates", "--duplicates", "some")
+        for tolerance in ("-1", "nan", "inf"):
+            self.bad(f"--weld {tolerance}: give a tolerance of 0 or more", "run", "plates", f"--weld={tolerance}")
 
     def test_many_flawed_bodies_are_counted_and_the_first_named(self):
         flat, _ = self.flawed("many.msh")

@@ -141,10 +141,11 @@ std::vector<std::byte> Bodies::shared_vertices() const {
 
 /// Uploads constant data: tetrahedra, ids, boundary, rows, and vertices in mesh coordinates.
 void Bodies::upload_static() {
-    std::vector<std::uint32_t> tetrahedra, ids{count()};
+    std::vector<std::uint32_t> tetrahedra, topology, ids{count()};
     std::vector<std::uint8_t> boundary;
     const auto add = [&](const OrderedMesh& mesh) {
         tetrahedra.insert(tetrahedra.end(), mesh.tetrahedra.begin(), mesh.tetrahedra.end());
+        topology.insert(topology.end(), mesh.topology().begin(), mesh.topology().end());
         ids.insert(ids.end(), mesh.ids.begin(), mesh.ids.end());
         boundary.insert(boundary.end(), mesh.boundary.begin(), mesh.boundary.end());
     };
@@ -154,6 +155,8 @@ void Bodies::upload_static() {
     else
         for (const auto& body : scene_.bodies) add(meshes_[body.mesh]);
     tetrahedra_ = uploaded(device_, bytes_of(tetrahedra), "tetrahedra");
+    if (std::ranges::any_of(meshes_, [](const auto& mesh) { return !mesh.joined.empty(); }))
+        topology_ = uploaded(device_, bytes_of(topology), "topology of welded meshes");
     ids_ = uploaded(device_, bytes_of(ids), "numbers of bodies and tetrahedra");
     boundary_ = uploaded(device_, bytes_of(boundary), "boundary faces");
     row_table_ = uploaded(device_, bytes_of(rows_), "bodies");
@@ -175,8 +178,8 @@ void Bodies::upload_static() {
 
 std::size_t Bodies::bytes() const {
     std::size_t sum = 0;
-    for (const auto* buffer : {&row_table_, &blocks_, &tetrahedra_, &ids_, &boundary_, &vertices_, &poses_,
-                               &next_vertices_, &next_poses_})
+    for (const auto* buffer : {&row_table_, &blocks_, &tetrahedra_, &topology_, &ids_, &boundary_, &vertices_,
+                               &poses_, &next_vertices_, &next_poses_})
         sum += buffer->bytes();
     return sum;
 }

@@ -89,6 +89,8 @@ public:
     /// The table that members_of (pairs.clh) reads: rows of blocks of slots, or row_table().
     const Buffer& owners() const { return pair_layout_ == PairLayout::slots ? blocks_ : row_table_; }
     const Buffer& tetrahedra() const { return tetrahedra_; } ///< 4 vertex numbers each
+    /// The same by OrderedMesh::topology(), to compare vertices within a body; of no meaning for coordinates.
+    const Buffer& topology() const { return topology_ ? topology_ : tetrahedra_; }
     const Buffer& ids() const { return ids_; } ///< numbers of bodies and tetrahedra in answers (pairs.clh)
     const Buffer& boundary() const { return boundary_; } ///< 1 byte each; bit i: the face opposite corner i
     const Buffer& vertices() const { return vertices_; } ///< 4 reals each
@@ -133,7 +135,8 @@ private:
         std::vector<std::uint32_t> bodies;
     };
     std::vector<Run> runs_;
-    Buffer row_table_, blocks_, tetrahedra_, ids_, boundary_, vertices_, poses_, next_vertices_, next_poses_;
+    Buffer row_table_, blocks_, tetrahedra_, topology_, ids_, boundary_, vertices_, poses_, next_vertices_,
+        next_poses_;
 };
 
 } // namespace tandem

@@ -112,7 +112,7 @@ void ChunkedWalker::traverse(const WalkTask& task, std::uint32_t level, std::uin
                                              trees_.level_table(),
                                              bodies.row_table(),
                                              bodies.ids(),
-                                             bodies.tetrahedra(),
+                                             bodies.topology(),
                                              task.body_pairs,
                                              pair_capacity,
                                              level,

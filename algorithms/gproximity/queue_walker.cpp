@@ -139,7 +139,7 @@ void QueueWalker::traverse(const WalkTask& task) {
                                              trees_.tree_table(),
                                              bodies.row_table(),
                                              bodies.ids(),
-                                             bodies.tetrahedra(),
+                                             bodies.topology(),
                                              task.body_pairs,
                                              items(),
                                              counts_,

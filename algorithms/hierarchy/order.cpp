@@ -82,14 +82,15 @@ std::vector<std::uint32_t> order_of(const Mesh& mesh, Builder builder) {
     throw std::invalid_argument("unknown builder");
 }
 
-/// Order of the tetrahedra with boundary faces alone, so that a builder's runs are full.
-std::vector<std::uint32_t> boundary_order(const Mesh& mesh, Builder builder) {
-    auto walked = walked_tetrahedra(mesh, Walked::boundary);
+/// Order of the walked tetrahedra alone, so that a builder's runs are full.
+std::vector<std::uint32_t> walked_order(const Mesh& mesh, MeshOrder given) {
+    if (count_walked(mesh, given.walked) == mesh.tetrahedra.size()) return order_of(mesh, given.builder);
+    auto walked = walked_tetrahedra(mesh, given.walked);
     Mesh part;
     part.vertices = mesh.vertices;
     part.tetrahedra.reserve(walked.size());
     for (const auto id : walked) part.tetrahedra.push_back(mesh.tetrahedra[id]);
-    auto order = order_of(part, builder);
+    auto order = order_of(part, given.builder);
     for (auto& position : order) position = walked[position];
     return order;
 }
@@ -142,9 +143,10 @@ std::vector<std::uint32_t> hilbert_order(const std::vector<Eigen::Vector3d>& poi
 std::vector<std::uint32_t> hilbert_order(const Mesh& mesh) { return hilbert_order(centroids(mesh)); }
 
 std::size_t count_walked(const Mesh& mesh, Walked walked) {
-    if (walked == Walked::all) return mesh.tetrahedra.size();
+    const auto all = mesh.tetrahedra.size() - mesh.merged.size();
+    if (walked == Walked::all) return all;
     const auto inner = static_cast<std::size_t>(std::ranges::count(mesh.boundary, std::uint8_t{0}));
-    return inner == mesh.tetrahedra.size() ? inner : mesh.tetrahedra.size() - inner;
+    return inner == mesh.tetrahedra.size() ? all : mesh.tetrahedra.size() - inner;
 }
 
 std::size_t count_walked(const Scene& scene, Walked walked) {
@@ -159,16 +161,15 @@ std::vector<std::uint32_t> walked_tetrahedra(const Mesh& mesh, Walked walked) {
     std::vector<std::uint32_t> result;
     const auto count = count_walked(mesh, walked);
     result.reserve(count);
-    const bool takes_all = count == mesh.tetrahedra.size();
+    const bool takes_inner = count == count_walked(mesh, Walked::all);
     for (std::uint32_t i = 0; i < mesh.tetrahedra.size(); ++i)
-        if (takes_all || mesh.boundary[i] != 0) result.push_back(i);
+        if (takes_inner ? !is_merged(mesh, i) : mesh.boundary[i] != 0) result.push_back(i);
     return result;
 }
 
 OrderedMesh ordered(const Mesh& mesh, MeshOrder order) {
     OrderedMesh result;
-    result.ids =
-        order.walked == Walked::all ? order_of(mesh, order.builder) : boundary_order(mesh, order.builder);
+    result.ids = walked_order(mesh, order);
     result.numbers.assign(mesh.vertices.size(), OrderedMesh::unused);
     for (const auto id : result.ids) {
         result.boundary.push_back(mesh.boundary[id]);
@@ -180,6 +181,8 @@ OrderedMesh ordered(const Mesh& mesh, MeshOrder order) {
             }
             result.tetrahedra.push_back(number);
         }
+        if (!mesh.welded.empty())
+            for (const auto vertex : mesh.tetrahedra[id]) result.joined.push_back(mesh.welded[vertex]);
     }
     return result;
 }

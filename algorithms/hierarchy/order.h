@@ -33,10 +33,10 @@ std::vector<std::uint32_t> hilbert_order(const Mesh& mesh);
 /// Centroids of a mesh's tetrahedra. They may overflow where coordinates are near the largest numbers.
 std::vector<Eigen::Vector3d> centroids(const Mesh& mesh);
 
-/// The tetrahedra of a mesh that a session walks.
+/// The tetrahedra of a mesh that a session walks; merged duplicates never.
 enum class Walked {
     all,
-    boundary ///< those with boundary faces; all of a mesh in which none has them, since no tree is empty
+    boundary ///< those with boundary faces; all if none of a mesh has them, since no tree is empty
 };
 
 /// Numbers of the walked tetrahedra, ascending.
@@ -54,10 +54,14 @@ struct MeshOrder {
 /// A mesh in device layout: tetrahedra in a builder's order, vertices renumbered by first use.
 struct OrderedMesh {
     std::vector<std::uint32_t> tetrahedra; ///< 4 vertex numbers each, in the new numbering
-    std::vector<std::uint32_t> ids;        ///< position -> tetrahedron in input order; walked ones only
-    std::vector<std::uint32_t> vertices;   ///< new vertex number -> vertex in input order
-    std::vector<std::uint32_t> numbers;    ///< vertex in input order -> new number, or `unused`
-    std::vector<std::uint8_t> boundary;    ///< as Mesh::boundary, by position
+    std::vector<std::uint32_t> joined;   ///< the same by Mesh::welded, for common vertices; empty: not welded
+    std::vector<std::uint32_t> ids;      ///< position -> tetrahedron in input order; walked ones only
+    std::vector<std::uint32_t> vertices; ///< new vertex number -> vertex in input order
+    std::vector<std::uint32_t> numbers;  ///< vertex in input order -> new number, or `unused`
+    std::vector<std::uint8_t> boundary;  ///< as Mesh::boundary, by position
+
+    /// Numbers that are equal where corners are one vertex of the topology; by position, 4 each.
+    const std::vector<std::uint32_t>& topology() const { return joined.empty() ? tetrahedra : joined; }
 
     static constexpr std::uint32_t unused = 0xffffffff; ///< number of a vertex without walked tetrahedra
 };

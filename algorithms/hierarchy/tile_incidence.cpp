@@ -82,7 +82,7 @@ TileIncidence::TileIncidence(const Bodies& bodies, SelfPairs self) {
         const auto& ordered = bodies.ordered_mesh(mesh);
         const auto tiles = static_cast<std::uint32_t>((ordered.ids.size() + mask_bits - 1) / mask_bits);
         const auto first = static_cast<std::uint32_t>(all.partners.size());
-        auto own = is_needed[mesh] ? incidence_of(ordered.tetrahedra, ordered.vertices.size())
+        auto own = is_needed[mesh] ? incidence_of(ordered.topology(), scene.meshes[mesh].vertices.size())
                                    : IncidenceTable{std::vector<std::uint32_t>(tiles + 1), {}, {}};
         own.starts.pop_back();
         append(all.starts, own.starts, first);

@@ -30,7 +30,7 @@ void BodyQueries::do_launch(const WalkTask& task) {
                                              trees_.tree_table(),
                                              bodies.row_table(),
                                              bodies.ids(),
-                                             bodies.tetrahedra(),
+                                             bodies.topology(),
                                              task.body_pairs,
                                              task.pair_capacity,
                                              blocks_,

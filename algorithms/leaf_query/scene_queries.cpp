@@ -40,7 +40,7 @@ void SceneQueries::do_launch(const WalkTask& task) {
                                              tree_.tree_table(),
                                              bodies.row_table(),
                                              bodies.ids(),
-                                             bodies.tetrahedra(),
+                                             bodies.topology(),
                                              task.answer.pairs.buffer(),
                                              task.answer.pairs.capacity(),
                                              task.status.buffer()};

@@ -42,6 +42,7 @@ struct AlgorithmsOptions {
 struct ExportOptions {
     std::string scene;
     std::vector<std::string> meshes, poses; ///< as in RunOptions
+    MeshReading reading{};                  ///< as in RunOptions
     std::string frames;                     ///< "FIRST:LAST" or "N"; empty: all
     std::size_t every = 1;                  ///< export every Nth frame only
     std::string vtu, glb, geometry;         ///< a folder and two files
@@ -58,6 +59,7 @@ struct ExportOptions {
 /// Options of `tandem simulate`.
 struct SimulateOptions {
     std::string scene;
+    MeshReading reading{};  ///< as in RunOptions
     std::string recording;  ///< -o: the file for recorded frames; empty: none
     std::string record;     ///< append one JSON line a step and one for the run to this file
     std::string pictures;   ///< OUT: draw the recording as OUT-0.png, ...; empty: no pictures

@@ -31,6 +31,7 @@ Scene open_scene(const ExportOptions& options) {
     run.scene = options.scene;
     run.meshes = options.meshes;
     run.poses = options.poses;
+    run.reading = options.reading;
     return open_scene(run);
 }
 

@@ -20,9 +20,9 @@ using Texts = std::vector<std::string>;
 const Texts product_fields{"scenes", "frames", "algorithms", "presets", "settings", "devices"};
 
 /// Options with a value of `tandem run` that a plan may give.
-const Texts valued{"noise",          "seconds",    "repeat", "seed",   "truth",
-                   "truth-contacts", "degenerate", "memory", "timeout"};
-const Texts flags{"no-check", "no-count", "check-afresh", "isolate"};
+const Texts valued{"noise",      "seconds", "repeat",  "seed",       "truth", "truth-contacts",
+                   "degenerate", "memory",  "timeout", "duplicates", "weld"};
+const Texts flags{"no-check", "no-count", "check-afresh", "isolate", "corners", "only-tetrahedra"};
 
 /// The string, or a number as a user would write it.
 std::string scalar(const Json& json, const JsonLocation& location) {

@@ -5,6 +5,8 @@
 #include "backends/hardware.h"
 #include "harness/record/record.h"
 
+#include <array>
+
 namespace tandem::record_parts {
 
 namespace {
@@ -14,6 +16,43 @@ std::size_t over_bodies(const Scene& scene, std::size_t Mesh::*member) {
     std::size_t sum = 0;
     for (const auto& body : scene.bodies) sum += scene.meshes[body.mesh].*member;
     return sum;
+}
+
+/// A finding of the meshes, summed over the bodies.
+auto found(std::size_t MeshFindings::*member) {
+    return [member](const Scene& scene) {
+        std::size_t sum = 0;
+        for (const auto& body : scene.bodies) sum += scene.meshes[body.mesh].findings.*member;
+        return sum;
+    };
+}
+
+std::string_view name_of(Duplicates handling) {
+    constexpr std::array names{"merge", "keep", "reject"};
+    return names.at(static_cast<std::size_t>(handling));
+}
+
+const Fields<Scene>& reading_fields() {
+    static const Fields<Scene> fields{
+        {"handling", one_of({"merge", "keep", "reject"}),
+         "--duplicates. merge: duplicates take no part; keep: they take part; reject: there are none",
+         [](auto& s) { return name_of(s.reading.duplicates); }},
+        {"duplicates", count(), "tetrahedra with the four vertices of an earlier one",
+         found(&MeshFindings::duplicates)},
+        {"weld", nullable(number_from(0)),
+         "--weld: vertices at most this far apart are one for boundary faces, duplicates and setting self; "
+         "null: no welding",
+         [](auto& s) { return s.reading.weld ? Json(*s.reading.weld) : Json(); }},
+        {"welded", count(), "vertices that were welded to an earlier one", found(&MeshFindings::welded)},
+        {"coincident", count(), "vertices of mesh files at the position of an earlier one",
+         found(&MeshFindings::coincident)},
+        {"ghosts", count(), "tetrahedra that files mark as duplicate or hidden ghost cells; left out",
+         found(&MeshFindings::ghosts)},
+        {"reduced", count(), "tetrahedra of higher order, read by their corners",
+         found(&MeshFindings::reduced)},
+        {"other_cells", count(), "volume cells that are not tetrahedra; left out",
+         found(&MeshFindings::other_cells)}};
+    return fields;
 }
 
 } // namespace
@@ -42,7 +81,14 @@ const Fields<Scene>& scene_fields() {
         {"inverted", count(), "tetrahedra of negative volume at rest, summed over bodies; kept",
          [](auto& s) { return over_bodies(s, &Mesh::inverted); }},
         {"degenerate", count(), "tetrahedra of zero volume at rest, summed over bodies; kept",
-         [](auto& s) { return over_bodies(s, &Mesh::degenerate); }}};
+         [](auto& s) { return over_bodies(s, &Mesh::degenerate); }},
+        {"reading",
+         reading_fields().type(
+             "how the meshes were read and connected, decided before the first frame; counts "
+             "are sums over bodies; records from before it have none"),
+         "",
+         [](auto& s) { return reading_fields().write(s); },
+         {.optional = true}}};
     return fields;
 }
 

@@ -205,9 +205,10 @@ ReferenceAnswer answer_in(const Scene& scene, const FrameInput& input, const Geo
                 sweep(bounds[a], bounds[b], hit);
         }
         if (meets_itself(scene, a, settings.self)) {
-            const auto& tetrahedra = scene.meshes[scene.bodies[a].mesh].tetrahedra;
+            const auto& mesh = scene.meshes[scene.bodies[a].mesh];
             const auto hit = [&](std::uint32_t t, std::uint32_t u) {
-                if (!share_vertex(tetrahedra[t], tetrahedra[u])) found[a].push_back({a, t, a, u});
+                if (!share_vertex(joined(mesh, mesh.tetrahedra[t]), joined(mesh, mesh.tetrahedra[u])))
+                    found[a].push_back({a, t, a, u});
             };
             if (method == Method::brute_force)
                 test_all_of_one(bounds[a], hit);

@@ -163,8 +163,7 @@ Bounds<Real> bounds_of(const Scene& scene, const Frame& frame, const Geometry& g
     bounds.whole.assign(axes.size(), std::numeric_limits<Real>::infinity());
     bounds.whole.insert(bounds.whole.end(), axes.size(), -std::numeric_limits<Real>::infinity());
     std::vector<bool> skipped(tetrahedra.size());
-    if (!frame.skipped.empty())
-        for (const auto t : frame.skipped[body]) skipped[t] = true;
+    for (const auto t : skipped_in(scene, frame, body)) skipped[t] = true;
     for (std::size_t axis = 0; axis < axes.size(); ++axis) {
         for (std::size_t t = 0; t < tetrahedra.size(); ++t) {
             Real lower = std::numeric_limits<Real>::infinity();

@@ -4,9 +4,11 @@
 #include "python/core/arrays.h"
 #include "scenes/mesh.h"
 #include "scenes/read/read.h"
+#include "scenes/weld.h"
 
 #include <fmt/format.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 namespace nb = nanobind;
 
@@ -24,6 +26,7 @@ Mesh mesh_of(const Points& vertices, const Corners& tetrahedra, const std::strin
     const auto* const first = reinterpret_cast<const Tetrahedron*>(tetrahedra.data());
     mesh.tetrahedra.assign(first, first + tetrahedra.shape(0));
     complete_mesh(mesh, name);
+    mesh.findings.coincident = count_coincident(mesh);
     return mesh;
 }
 
@@ -33,6 +36,7 @@ Mesh parsed(const nb::bytes& data, const std::string& name) {
     auto mesh = parse_mesh(view, name);
     mesh.name = name;
     complete_mesh(mesh, name);
+    mesh.findings.coincident = count_coincident(mesh);
     return mesh;
 }
 
@@ -51,7 +55,8 @@ void bind_meshes(nb::module_& module) {
         "vertices: (n, 3) float64, in the unit of the scene. tetrahedra: (m, 4) uint32, indices of "
         "vertices; answers number tetrahedra in this order. Both are read-only "
         "views of the mesh's own memory. inverted and degenerate count tetrahedra of negative "
-        "and of zero volume; the mesh keeps them.")
+        "and of zero volume; the mesh keeps them. merged lists duplicates of earlier tetrahedra, "
+        "which are in no answer; findings is one line about them and about coincident vertices, or empty.")
         .def_prop_ro("vertices",
                      [](nb::handle self) {
                          const auto& rows = nb::cast<const Mesh&>(self).vertices;
@@ -72,14 +77,17 @@ void bind_meshes(nb::module_& module) {
              })
         .def_ro("name", &Mesh::name)
         .def_ro("inverted", &Mesh::inverted)
-        .def_ro("degenerate", &Mesh::degenerate);
+        .def_ro("degenerate", &Mesh::degenerate)
+        .def_ro("merged", &Mesh::merged)
+        .def_prop_ro("findings", [](const Mesh& mesh) { return findings_text(mesh); });
     module.def("make_mesh", &mesh_of, nb::arg("vertices"), nb::arg("tetrahedra"), nb::arg("name"),
                "Implementation of tandem.make_mesh, which checks its input.");
     module.def(
         "parse_mesh", &parsed, nb::arg("data"), nb::arg("name"),
         "Makes a mesh of the bytes of a file of read_mesh, except of TetGen's pairs. Raises ValueError.");
     module.def(
-        "read_mesh", &read_mesh, nb::arg("path"), nb::call_guard<nb::gil_scoped_release>(),
+        "read_mesh", [](const std::string& path) { return read_mesh(path); }, nb::arg("path"),
+        nb::call_guard<nb::gil_scoped_release>(),
         "Reads a tetrahedral mesh. Content and suffix determine the format: Gmsh .msh 2.2 and 4.1, Medit "
         ".mesh, TetGen .node/.ele, legacy .vtk and .vtu. Raises ValueError with FILE:LINE.");
 }

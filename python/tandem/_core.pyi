@@ -28,7 +28,7 @@ class Mesh:
     """
     Checked vertices and tetrahedra: every index is in range, every coordinate is finite.
 
-    vertices: (n, 3) float64, in the unit of the scene. tetrahedra: (m, 4) uint32, indices of vertices; answers number tetrahedra in this order. Both are read-only views of the mesh's own memory. inverted and degenerate count tetrahedra of negative and of zero volume; the mesh keeps them.
+    vertices: (n, 3) float64, in the unit of the scene. tetrahedra: (m, 4) uint32, indices of vertices; answers number tetrahedra in this order. Both are read-only views of the mesh's own memory. inverted and degenerate count tetrahedra of negative and of zero volume; the mesh keeps them. merged lists duplicates of earlier tetrahedra, which are in no answer; findings is one line about them and about coincident vertices, or empty.
     """
 
     @property
@@ -45,6 +45,12 @@ class Mesh:
 
     @property
     def degenerate(self) -> int: ...
+
+    @property
+    def merged(self) -> list[int]: ...
+
+    @property
+    def findings(self) -> str: ...
 
 def make_mesh(vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], tetrahedra: Annotated[NDArray[numpy.uint32], dict(shape=(None, 4), order='C', device='cpu', writable=False)], name: str) -> Mesh:
     """Implementation of tandem.make_mesh, which checks its input."""

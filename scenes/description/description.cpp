@@ -45,9 +45,16 @@ struct Motion {
     }
 };
 
-/// File paths are relative to the description, not to the working directory.
-Mesh read_source(const Json& json, const JsonLocation& location, const std::filesystem::path& folder) {
-    if (json.contains("file")) return read_mesh((folder / text(json["file"], location / "file")).string());
+/// How the files of a description are read. Their paths are relative to its folder, not to the working
+/// directory.
+struct Files {
+    std::filesystem::path folder;
+    MeshReading reading;
+};
+
+Mesh read_source(const Json& json, const JsonLocation& location, const Files& files) {
+    if (json.contains("file"))
+        return read_mesh((files.folder / text(json["file"], location / "file")).string(), files.reading);
     if (json.contains("box")) {
         const auto size = vector(json["box"], location / "box");
         if (!(size.minCoeff() > 0)) (location / "box").fail("must have sides above 0");
@@ -60,15 +67,15 @@ Mesh read_source(const Json& json, const JsonLocation& location, const std::file
     return built_in_mesh(name);
 }
 
-Mesh read_one(const Json& json, const JsonLocation& location, const std::filesystem::path& folder) {
+Mesh read_one(const Json& json, const JsonLocation& location, const Files& files) {
     check_names(json, location, {"builtin", "file", "box", "scale"});
     if (json.contains("builtin") + json.contains("file") + json.contains("box") != 1)
         location.fail("must name one builtin, file or box");
-    auto mesh = read_source(json, location, folder);
+    auto mesh = read_source(json, location, files);
     if (!json.contains("scale")) return mesh;
     const double scale = positive(json["scale"], location / "scale");
     for (auto& v : mesh.vertices) v *= scale;
-    complete_mesh(mesh, location.text());
+    complete_mesh(mesh, location.text(), files.reading);
     return mesh;
 }
 
@@ -179,10 +186,10 @@ Frame frame_of(const std::vector<Motion>& motions, std::size_t index) {
 std::vector<Motion> read_bodies(const Json& json, const JsonLocation& root, Scene& scene) {
     std::map<std::string, std::uint32_t> meshes;
     if (!json.contains("meshes") || !json["meshes"].is_object()) root.fail("has no meshes");
+    const Files files{std::filesystem::path(root.file).parent_path(), scene.reading};
     for (const auto& [name, value] : json["meshes"].items()) {
         meshes[name] = static_cast<std::uint32_t>(scene.meshes.size());
-        scene.meshes.push_back(
-            read_one(value, root / "meshes" / name, std::filesystem::path(root.file).parent_path()));
+        scene.meshes.push_back(read_one(value, root / "meshes" / name, files));
     }
     if (!json.contains("bodies") || !json["bodies"].is_array() || json["bodies"].empty())
         root.fail("has no bodies");
@@ -200,13 +207,14 @@ std::vector<Motion> read_bodies(const Json& json, const JsonLocation& root, Scen
 
 } // namespace
 
-Scene load_description(const std::string& path) {
+Scene load_description(const std::string& path, const MeshReading& reading) {
     const auto json = read_json(path, "scene description");
     if (json.is_object() && json.contains("plan"))
         throw InputError(fmt::format("{}: is a plan, not a scene; give it to 'tandem run'", path));
     const JsonLocation root{path, {}};
     check_names(json, root, {"name", "units", "frames", "meshes", "bodies", "never_meet", "dynamics"});
     Scene scene;
+    scene.reading = reading;
     scene.name = json.contains("name") ? text(json["name"], root / "name")
                                        : std::filesystem::path(path).stem().string();
     if (json.contains("units")) scene.units = text(json["units"], root / "units");
@@ -236,13 +244,15 @@ Scene load_description(const std::string& path) {
     return scene;
 }
 
-Scene scene_from_meshes(std::span<const std::string> files, std::span<const Pose> poses) {
+Scene scene_from_meshes(std::span<const std::string> files, std::span<const Pose> poses,
+                        const MeshReading& reading) {
     if (poses.size() > files.size()) throw InputError("more poses than meshes; give one pose a mesh at most");
     Scene scene;
     scene.name = "meshes";
+    scene.reading = reading;
     std::vector<Motion> motions;
     for (std::size_t i = 0; i < files.size(); ++i) {
-        scene.meshes.push_back(read_mesh(files[i]));
+        scene.meshes.push_back(read_mesh(files[i], reading));
         scene.bodies.push_back({.mesh = static_cast<std::uint32_t>(i), .fixed = false, .deformable = false});
         motions.emplace_back();
         if (i < poses.size()) motions.back().start = poses[i];

@@ -16,7 +16,8 @@ bool read_version(GmshFile& file) {
     const auto version = in.token("the MSH version");
     const bool is_version_2 = version == "2.2" || version == "2.1" || version == "2" || version == "2.0";
     if (!is_version_2 && version != "4.1")
-        in.fail(fmt::format("MSH version {} is not supported", in_quotes(version)), "save as MSH 2.2 or 4.1");
+        in.fail(fmt::format("MSH version {} is not supported", in_quotes(version)),
+                "bring it to .vtu with 'tandem convert', or save as MSH 2.2 or 4.1");
     const int encoding = in.get<int>("the file type");
     if (encoding != 0 && encoding != 1)
         in.fail("the file type is neither 0 (ASCII) nor 1 (binary)", "export the file again");
@@ -42,9 +43,21 @@ void skip_section(Scanner& in, std::string_view name) {
     in.seek(end);
 }
 
+/// The end of a section: $EndNodes, in version 1 $ENDNOD.
+std::string end_of(std::string_view name) {
+    const bool is_version_1 = name == "$NOD" || name == "$ELM";
+    return fmt::format("${}{}", is_version_1 ? "END" : "End", name.substr(1));
+}
+
 /// Reads the end of a section. Numbers in its place mean that the section's count is too small.
 void end_section(Scanner& in, std::string_view name) {
-    const auto wanted = fmt::format("$End{}", name.substr(1));
+    const auto wanted = end_of(name);
+    if (in.done() || in.text()[in.at()] == '$') {
+        const auto start = in.at();
+        if (in.done() || in.token(wanted) != wanted)
+            in.fail(fmt::format("{} is missing", wanted), "copy or export the file again");
+        in.seek(start);
+    }
     const auto word = in.token(wanted);
     if (word != wanted)
         in.fail(fmt::format("expected {}, found {}", in_quotes(wanted), in_quotes(word)),
@@ -53,7 +66,6 @@ void end_section(Scanner& in, std::string_view name) {
 
 std::string_view section_name(Scanner& in) {
     const auto name = in.token("a section");
-    if (name == "$NOD") in.fail("MSH version 1 is not supported", "save as MSH 2.2 or 4.1");
     if (name == "$ParametricNodes")
         in.fail("section $ParametricNodes is not supported",
                 "save without Mesh.SaveParametric, or as MSH 4.1");
@@ -63,29 +75,38 @@ std::string_view section_name(Scanner& in) {
     return name;
 }
 
-void read_nodes(GmshFile& file, bool is_version_4) {
+enum class Version { none, one, two, four };
+
+void read_nodes(GmshFile& file, Version version) {
     if (file.tags.size() > 0) file.in.fail("a second section $Nodes", "merge the two");
-    is_version_4 ? read_nodes_4(file) : read_nodes_2(file);
+    version == Version::four  ? read_nodes_4(file)
+    : version == Version::two ? read_nodes_2(file)
+                              : read_nodes_1(file);
     if (const auto duplicate = file.tags.index())
         file.in.fail(fmt::format("node {} occurs twice", *duplicate), "repair the mesh");
 }
 
 } // namespace
 
-Mesh parse_gmsh(std::string_view bytes, const std::string& source) {
-    GmshFile file{Scanner(bytes, source)};
-    std::optional<bool> is_version_4;
+Mesh parse_gmsh(std::string_view bytes, const std::string& source, const MeshReading& reading) {
+    GmshFile file{.in = Scanner(bytes, source), .reading = reading};
+    auto version = Version::none;
     while (!file.in.done()) {
         const auto name = section_name(file.in);
-        const bool nodes = name == "$Nodes", elements = name == "$Elements";
-        if ((nodes || elements) && !is_version_4)
+        const bool is_1 = name == "$NOD" || name == "$ELM";
+        const bool nodes = name == "$Nodes" || name == "$NOD",
+                   elements = name == "$Elements" || name == "$ELM";
+        if (is_1 && version == Version::none) version = Version::one;
+        if ((nodes || elements) && (version == Version::none || is_1 != (version == Version::one)))
             file.in.fail(fmt::format("{} comes before $MeshFormat", name), "export the file again");
         if (name == "$MeshFormat")
-            is_version_4 = read_version(file);
+            version = read_version(file) ? Version::four : Version::two;
         else if (nodes)
-            read_nodes(file, *is_version_4);
+            read_nodes(file, version);
         else if (elements)
-            *is_version_4 ? read_elements_4(file) : read_elements_2(file);
+            version == Version::four  ? read_elements_4(file)
+            : version == Version::two ? read_elements_2(file)
+                                      : read_elements_1(file);
         else
             skip_section(file.in, name);
         end_section(file.in, name);

@@ -3,6 +3,7 @@
 
 #include "scenes/mesh.h"
 #include "scenes/read/cursor.h"
+#include "scenes/read/formats.h"
 #include "scenes/read/scanner.h"
 
 #include <cstdint>
@@ -11,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-/// Common parts of the two versions of Gmsh's MSH format.
+/// Common parts of the versions of Gmsh's MSH format.
 namespace tandem::read {
 
 /// Maps node tags, which may have gaps and any order, to indices in the order of the file.
@@ -35,6 +36,7 @@ struct GmshFile {
     bool binary = false;
     Mesh mesh = {};
     NodeTags tags = {};
+    MeshReading reading = {};
 };
 
 struct ElementType {
@@ -49,41 +51,52 @@ constexpr int gmsh_tetrahedron = 4;
 /// The type with this id, or none.
 std::optional<ElementType> element_type(int id);
 
-/// Read the contents of sections $Nodes and $Elements, without name and end.
+/// Read the contents of sections $Nodes and $Elements, in version 1 $NOD and $ELM, without name and end.
+void read_nodes_1(GmshFile& file);
+void read_elements_1(GmshFile& file);
 void read_nodes_2(GmshFile& file);
 void read_elements_2(GmshFile& file);
 void read_nodes_4(GmshFile& file);
 void read_elements_4(GmshFile& file);
 
-/// The type of elements to read (tetrahedra) or to skip (lower dimension). Fails for all other types.
+/// Whether elements of this type are tetrahedra of any order. Their first four nodes are the corners.
+inline bool is_tetrahedron(const ElementType& type) { return type.name.ends_with("tetrahedron"); }
+
+/// The type of elements to read (tetrahedra) or to skip. Fails for unknown types, and for those that
+/// `reading` refuses.
 template<class In>
-ElementType require_type(const In& in, int id) {
+ElementType require_type(const In& in, int id, const MeshReading& reading) {
     const auto type = element_type(id);
     if (!type)
         in.fail("element type " + std::to_string(id) + " is unknown",
                 "convert to linear tetrahedra (type 4)");
-    if (type->dimension == 3 && id != gmsh_tetrahedron)
+    const bool is_accepted =
+        id == gmsh_tetrahedron || (is_tetrahedron(*type) ? reading.corners : reading.only_tetrahedra);
+    if (type->dimension == 3 && !is_accepted)
         in.fail("element type " + std::to_string(id) + " (" + std::string(type->name)
                     + ") is not the linear tetrahedron",
-                "mesh with linear tetrahedra only (type 4)");
+                is_tetrahedron(*type) ? corners_remedy : only_remedy);
     return *type;
 }
 
 /// Reads the nodes of one element, each of type Tag. Adds tetrahedra to the mesh.
 template<class Tag, class In>
-void read_corners(In& in, const ElementType& type, const NodeTags& tags, Mesh& mesh) {
-    if (type.id != gmsh_tetrahedron) {
+void read_corners(In& in, const ElementType& type, GmshFile& file) {
+    if (!is_tetrahedron(type)) {
         for (int i = 0; i < type.nodes; ++i) in.template get<Tag>("a node tag");
+        if (type.dimension == 3) ++file.mesh.findings.other_cells;
         return;
     }
     Tetrahedron corners{};
     for (auto& corner : corners) {
         const auto tag = in.template get<Tag>("a node tag");
-        const auto found = tags.find(static_cast<std::uint64_t>(tag));
+        const auto found = file.tags.find(static_cast<std::uint64_t>(tag));
         if (!found) in.fail("node " + std::to_string(tag) + " is not in $Nodes", "repair the mesh");
         corner = *found;
     }
-    mesh.tetrahedra.push_back(corners);
+    for (int i = 4; i < type.nodes; ++i) in.template get<Tag>("a node tag");
+    if (type.nodes > 4) ++file.mesh.findings.reduced;
+    file.mesh.tetrahedra.push_back(corners);
 }
 
 /// Runs `body` on the section's text, or on its binary data, which start on the next line.

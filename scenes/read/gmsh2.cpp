@@ -20,14 +20,14 @@ void read_nodes(In& in, std::uint64_t n, GmshFile& file) {
 template<class In>
 void read_element(In& in, const ElementType& type, std::int32_t tags, GmshFile& file) {
     for (std::int32_t i = 0; i < tags; ++i) in.template get<std::int32_t>("the tag of an element");
-    read_corners<std::int32_t>(in, type, file.tags, file.mesh);
+    read_corners<std::int32_t>(in, type, file);
 }
 
 void read_elements(Scanner& in, std::uint64_t n, GmshFile& file) {
     in.check_count(n, 4, 0, "elements");
     for (std::uint64_t i = 0; i < n; ++i) {
         in.get<std::int32_t>("the number of an element");
-        const auto type = require_type(in, in.get<std::int32_t>("the type of an element"));
+        const auto type = require_type(in, in.get<std::int32_t>("the type of an element"), file.reading);
         read_element(in, type, in.get<std::int32_t>("the number of tags"), file);
     }
 }
@@ -36,7 +36,7 @@ void read_elements(Scanner& in, std::uint64_t n, GmshFile& file) {
 void read_elements(Cursor& in, std::uint64_t n, GmshFile& file) {
     in.check_count(n, 0, 8, "elements");
     for (std::uint64_t done = 0; done < n;) {
-        const auto type = require_type(in, in.get<std::int32_t>("the type of elements"));
+        const auto type = require_type(in, in.get<std::int32_t>("the type of elements"), file.reading);
         const auto run = in.get<std::int32_t>("the number of elements of a type");
         if (run < 1 || static_cast<std::uint64_t>(run) > n - done)
             in.fail(fmt::format("a run of {} elements, but {} are left", run, n - done),
@@ -50,7 +50,27 @@ void read_elements(Cursor& in, std::uint64_t n, GmshFile& file) {
     }
 }
 
+/// Version 1: the number of nodes follows two region numbers.
+void read_elements_of_1(Scanner& in, std::uint64_t n, GmshFile& file) {
+    in.check_count(n, 6, 0, "elements");
+    for (std::uint64_t i = 0; i < n; ++i) {
+        in.get<std::int32_t>("the number of an element");
+        const auto type = require_type(in, in.get<std::int32_t>("the type of an element"), file.reading);
+        in.get<std::int32_t>("a physical region");
+        in.get<std::int32_t>("an elementary region");
+        if (in.get<std::int32_t>("the number of nodes") != type.nodes)
+            in.fail(fmt::format("a {} has {} nodes", type.name, type.nodes), "export the file again");
+        read_corners<std::int32_t>(in, type, file);
+    }
+}
+
 } // namespace
+
+void read_nodes_1(GmshFile& file) { read_nodes_2(file); } // the same rows, and always ASCII
+
+void read_elements_1(GmshFile& file) {
+    read_elements_of_1(file.in, file.in.get<std::uint64_t>("the number of elements"), file);
+}
 
 void read_nodes_2(GmshFile& file) {
     const auto n = file.in.get<std::uint64_t>("the number of nodes");

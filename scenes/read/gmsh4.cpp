@@ -61,13 +61,14 @@ void read_elements(In& in, GmshFile& file) {
     for (std::uint64_t block = 0; block < totals.blocks; ++block) {
         in.template get<std::int32_t>("the dimension of an entity");
         in.template get<std::int32_t>("the tag of an entity");
-        const auto type = require_type(in, in.template get<std::int32_t>("the type of elements"));
+        const auto type =
+            require_type(in, in.template get<std::int32_t>("the type of elements"), file.reading);
         const auto n = in.template get<std::uint64_t>("the number of elements in a block");
         const auto columns = 1 + static_cast<std::size_t>(type.nodes);
         in.check_count(n, columns, 8 * columns, "elements");
         for (std::uint64_t i = 0; i < n; ++i) {
             in.template get<std::uint64_t>("the tag of an element");
-            read_corners<std::uint64_t>(in, type, file.tags, file.mesh);
+            read_corners<std::uint64_t>(in, type, file);
         }
         sum += n;
     }

@@ -43,16 +43,32 @@ void read_vertices(Scanner& in, Mesh& mesh) {
     }
 }
 
-void read_tetrahedra(Scanner& in, Mesh& mesh) {
+/// `more`: numbers of nodes after the four corners.
+void read_tetrahedra(Scanner& in, Mesh& mesh, std::size_t more) {
     if (mesh.vertices.empty())
         in.fail("Tetrahedra come before Vertices", "write Vertices first, or export the file again");
     const auto n = in.get<std::uint64_t>("the number of tetrahedra");
-    in.check_count(n, 5, 0, "tetrahedra");
+    in.check_count(n, 5 + more, 0, "tetrahedra");
     mesh.tetrahedra.reserve(mesh.tetrahedra.size() + n);
+    if (more > 0) mesh.findings.reduced += n;
     for (std::uint64_t i = 0; i < n; ++i) {
         mesh.tetrahedra.push_back(get_tetrahedron(in, 1, mesh.vertices.size()));
+        for (std::size_t node = 0; node < more; ++node) in.get<std::int64_t>("a node number");
         in.get<std::int64_t>("the reference of a tetrahedron");
     }
+}
+
+/// Skips a section, or refuses its cells.
+void skip_section(Scanner& in, std::string_view keyword, const MeshReading& reading, Mesh& mesh) {
+    if (is_foreign(keyword)) {
+        const auto n = in.get<std::uint64_t>("a count");
+        const bool is_tetrahedra = keyword.starts_with("Tetrahedra");
+        if (n > 0 && (is_tetrahedra || !reading.only_tetrahedra))
+            in.fail(fmt::format("cells of type {} are not linear tetrahedra", in_quotes(keyword)),
+                    is_tetrahedra ? corners_remedy : only_remedy);
+        mesh.findings.other_cells += n;
+    }
+    skip_numbers(in);
 }
 
 void read_header(Scanner& in) {
@@ -64,7 +80,7 @@ void read_header(Scanner& in) {
 
 } // namespace
 
-Mesh parse_medit(std::string_view bytes, const std::string& source) {
+Mesh parse_medit(std::string_view bytes, const std::string& source, const MeshReading& reading) {
     Mesh mesh;
     Scanner in(bytes, source, '#');
     read_header(in);
@@ -79,12 +95,11 @@ Mesh parse_medit(std::string_view bytes, const std::string& source) {
         } else if (keyword == "Vertices") {
             read_vertices(in, mesh);
         } else if (keyword == "Tetrahedra") {
-            read_tetrahedra(in, mesh);
+            read_tetrahedra(in, mesh, 0);
+        } else if (keyword == "TetrahedraP2" && reading.corners) {
+            read_tetrahedra(in, mesh, 6);
         } else {
-            if (is_foreign(keyword) && in.get<std::uint64_t>("a count") > 0)
-                in.fail(fmt::format("cells of type {} are not tetrahedra", in_quotes(keyword)),
-                        "split them into linear tetrahedra");
-            skip_numbers(in);
+            skip_section(in, keyword, reading, mesh);
         }
     }
     return mesh;

@@ -4,7 +4,9 @@
 #include "base/error.h"
 #include "base/files_in_use.h"
 #include "scenes/read/formats.h"
+#include "scenes/read/gzip.h"
 #include "scenes/read/scanner.h"
+#include "scenes/weld.h"
 
 #include <algorithm>
 #include <array>
@@ -21,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using Parser = Mesh (*)(std::string_view, const std::string&);
+using Parser = Mesh (*)(std::string_view, const std::string&, const MeshReading&);
 
 struct Format {
     std::string_view suffix;
@@ -30,7 +32,7 @@ struct Format {
 };
 
 constexpr std::array formats = {
-    Format{".msh", {"$"}, read::parse_gmsh},
+    Format{".msh", {"$MeshFormat", "$NOD", "$Comments"}, read::parse_gmsh},
     Format{".mesh", {"MeshVersionFormatted"}, read::parse_medit},
     Format{".veg", {"*VERTICES"}, read::parse_veg},
     Format{".vtk", {"# vtk"}, read::parse_vtk},
@@ -67,6 +69,34 @@ const Format* by_suffix(const std::string& suffix) {
     return found == formats.end() ? nullptr : &*found;
 }
 
+/// Formats without a reader, by their first characters, which have a name in refusals.
+struct Foreign {
+    std::string_view opening, name;
+};
+constexpr std::array foreign_formats = {Foreign{"MFEM mesh", "MFEM"}, Foreign{"-1", "I-deas UNV"},
+                                        Foreign{"<febio_spec", "FEBio"}};
+
+/// The name of such a format; empty when unknown. Declarations and comments of XML may come first.
+std::string_view foreign_name(std::string_view bytes) {
+    read::Scanner in(bytes, "");
+    in.done();
+    const auto start = bytes.substr(in.at(), 2000);
+    for (const auto& [opening, name] : foreign_formats)
+        if (start.starts_with(opening)
+            || (opening[0] == '<' && start.starts_with('<') && start.find(opening) != std::string_view::npos))
+            return name;
+    return {};
+}
+
+[[noreturn]] void refuse_format(std::string_view name, const std::string& source) {
+    if (!name.empty())
+        throw InputError(fmt::format("{}: format {} is not read; export Gmsh .msh, .vtk or .vtu, or try "
+                                     "'tandem convert'",
+                                     source, name));
+    throw InputError(fmt::format("{}: unknown format; bring it to .vtu with 'tandem convert {} -o FILE.vtu'",
+                                 source, source));
+}
+
 std::string load(const fs::path& path) {
     std::error_code error;
     if (fs::is_directory(path, error))
@@ -78,19 +108,24 @@ std::string load(const fs::path& path) {
     file.seekg(0);
     if (!file.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
         throw InputError(fmt::format("{}: cannot be read; name a regular file", path.string()));
-    return bytes;
+    return read::is_gzip(bytes) ? read::gunzipped(bytes, path.string()) : bytes;
+}
+
+/// A path without the suffix of gzip.
+fs::path unpacked_name(const fs::path& path) {
+    return path.extension() == ".gz" ? fs::path(path).replace_extension() : path;
 }
 
 /// Reads a TetGen mesh. `path` is its .node file when `is_node` is true, else its .ele file.
-Mesh read_pair(const fs::path& path, bool is_node) {
+Mesh read_pair(const fs::path& path, bool is_node, const MeshReading& reading) {
     const auto partner = fs::path(path).replace_extension(is_node ? ".ele" : ".node");
     const auto bytes = load(path);
     if (!fs::exists(partner))
         throw InputError(fmt::format("{}: missing, the partner of {}; put both into one folder",
                                      partner.string(), path.string()));
     const auto other = load(partner);
-    return is_node ? parse_tetgen(bytes, path.string(), other, partner.string())
-                   : parse_tetgen(other, partner.string(), bytes, path.string());
+    return is_node ? parse_tetgen(bytes, path.string(), other, partner.string(), reading)
+                   : parse_tetgen(other, partner.string(), bytes, path.string(), reading);
 }
 
 } // namespace
@@ -100,28 +135,28 @@ void read::require_tetrahedra(const Mesh& mesh, const std::string& source) {
         throw InputError(fmt::format("{}: no tetrahedra; export the volume, not only the surface", source));
 }
 
-Mesh parse_mesh(std::string_view bytes, const std::string& source) {
+Mesh parse_mesh(std::string_view bytes, const std::string& source, const MeshReading& reading) {
     if (bytes.empty()) throw InputError(fmt::format("{}: the file is empty; export it again", source));
-    const auto suffix = suffix_of(source);
+    const auto suffix = suffix_of(unpacked_name(source).string());
     if (suffix == ".node" || suffix == ".ele")
         throw InputError(fmt::format("{}: one half of a TetGen mesh; give .node and .ele together", source));
+    if (const auto name = foreign_name(bytes); !name.empty()) refuse_format(name, source);
     const Format* format = by_content(bytes);
     if (format == nullptr) format = by_suffix(suffix);
-    if (format == nullptr)
-        throw InputError(fmt::format("{}: unknown format; convert it to Gmsh .msh, Medit .mesh, TetGen "
-                                     ".node and .ele, Vega .veg, legacy .vtk or .vtu",
-                                     source));
-    Mesh mesh = format->parse(bytes, source);
+    if (format == nullptr) refuse_format({}, source);
+    Mesh mesh = format->parse(bytes, source, reading);
     read::require_tetrahedra(mesh, source);
     return mesh;
 }
 
-Mesh read_mesh(const std::string& path) {
+Mesh read_mesh(const std::string& path, const MeshReading& reading) {
+    const auto unpacked = unpacked_name(path);
     const auto suffix = suffix_of(path);
     const bool pair = suffix == ".node" || suffix == ".ele";
-    Mesh mesh = pair ? read_pair(path, suffix == ".node") : parse_mesh(load(path), path);
-    mesh.name = fs::path(path).stem().string();
-    complete_mesh(mesh, path);
+    Mesh mesh = pair ? read_pair(path, suffix == ".node", reading) : parse_mesh(load(path), path, reading);
+    mesh.name = unpacked.stem().string();
+    complete_mesh(mesh, path, reading);
+    mesh.findings.coincident = count_coincident(mesh);
     return mesh;
 }
 

@@ -11,11 +11,11 @@ namespace tandem {
 /// Parses the bytes of one mesh file. The content determines the format, otherwise the suffix of `source`.
 /// Does not call complete_mesh. Throws InputError `source:line: what; what to do` (binary: `source: byte N:
 /// ...`).
-Mesh parse_mesh(std::string_view bytes, const std::string& source);
+Mesh parse_mesh(std::string_view bytes, const std::string& source, const MeshReading& reading = {});
 
 /// Parses a TetGen pair, numbered from 0 or 1. Does not call complete_mesh. Throws InputError like
 /// parse_mesh.
 Mesh parse_tetgen(std::string_view node, const std::string& node_source, std::string_view ele,
-                  const std::string& ele_source);
+                  const std::string& ele_source, const MeshReading& reading = {});
 
 } // namespace tandem

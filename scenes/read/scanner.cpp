@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <limits>
+#include <locale>
+#include <sstream>
 
 namespace tandem::read {
 
@@ -18,6 +20,13 @@ bool blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 std::size_t line_of(std::string_view text, std::size_t at) {
     const auto before = text.substr(0, at);
     return 1 + static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n'));
+}
+
+bool is_underflow(std::string_view number) {
+    std::istringstream in{std::string(number)};
+    in.imbue(std::locale::classic());
+    double value = 1;
+    return in >> value && std::fabs(value) < 1; // a stream reads the nearest double, and fails on overflow
 }
 
 /// Messages are one line of printable text for any content of the file.

@@ -14,6 +14,10 @@ namespace tandem::read {
 /// The line, from 1, of byte `at`. Only errors call it, so that scanning needs no counter.
 std::size_t line_of(std::string_view text, std::size_t at);
 
+/// Whether the text of a number is closer to 0 than any double but 0. from_chars only tells that it is out of
+/// range.
+bool is_underflow(std::string_view number);
+
 /// `token` in quotes, for messages: at most 40 characters, '?' for others than printable ASCII.
 std::string in_quotes(std::string_view token);
 
@@ -66,6 +70,8 @@ T Scanner::get(std::string_view what) {
     if (word.size() > 1 && word[0] == '+' && word[1] != '-') ++first; // from_chars takes no plus sign
     T value{};
     const auto [end, error] = std::from_chars(first, last, value);
+    if constexpr (std::is_floating_point_v<T>)
+        if (error == std::errc::result_out_of_range && end == last && is_underflow(word)) return T(0);
     if (error != std::errc() || end != last) fail_number(word, what, error);
     if constexpr (std::is_floating_point_v<T>)
         if (!std::isfinite(value)) fail_finite(word, what);

@@ -61,11 +61,12 @@ std::uint64_t read_nodes(Scanner& in, Mesh& mesh) {
     return first;
 }
 
-void read_elements(Scanner& in, std::uint64_t first, Mesh& mesh) {
+void read_elements(Scanner& in, std::uint64_t first, const MeshReading& reading, Mesh& mesh) {
     const auto header = read_header(in);
-    if (header.width == 10)
-        in.fail("cells of type second-order tetrahedron (10 vertices)", "run TetGen without -o2");
-    if (header.width != 4)
+    const bool is_second_order = header.width == 10;
+    if (is_second_order && !reading.corners)
+        in.fail("cells of type second-order tetrahedron (10 vertices)", read::corners_remedy);
+    if (header.width != 4 && !is_second_order)
         in.fail(fmt::format("cells of {} vertices are not tetrahedra", header.width),
                 "give 4 vertices a cell");
     in.check_count(header.count, 5, 0, "tetrahedra");
@@ -74,8 +75,10 @@ void read_elements(Scanner& in, std::uint64_t first, Mesh& mesh) {
         check_row(in, first + i);
         mesh.tetrahedra.push_back(
             read::get_tetrahedron(in, static_cast<std::int64_t>(first), mesh.vertices.size()));
+        skip_columns(in, header.width - 4);
         skip_columns(in, header.attributes);
     }
+    if (is_second_order) mesh.findings.reduced = header.count;
 }
 
 void check_end(Scanner& in) {
@@ -88,13 +91,13 @@ void check_end(Scanner& in) {
 } // namespace
 
 Mesh parse_tetgen(std::string_view node, const std::string& node_source, std::string_view ele,
-                  const std::string& ele_source) {
+                  const std::string& ele_source, const MeshReading& reading) {
     Mesh mesh;
     Scanner nodes(node, node_source, '#');
     const auto first = read_nodes(nodes, mesh);
     check_end(nodes);
     Scanner elements(ele, ele_source, '#');
-    read_elements(elements, first, mesh);
+    read_elements(elements, first, reading, mesh);
     check_end(elements);
     read::require_tetrahedra(mesh, ele_source);
     return mesh;

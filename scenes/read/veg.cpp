@@ -3,6 +3,8 @@
 #include "scenes/read/scanner.h"
 #include "scenes/read/vertex.h"
 
+#include <optional>
+
 namespace tandem::read {
 
 namespace {
@@ -42,8 +44,9 @@ void read_elements(Scanner& in, std::int64_t first, Mesh& mesh) {
 
 } // namespace
 
-Mesh parse_veg(std::string_view bytes, const std::string& source) {
+Mesh parse_veg(std::string_view bytes, const std::string& source, const MeshReading&) {
     Mesh mesh;
+    std::optional<std::size_t> include;
     std::int64_t first = 1;
     Scanner in(bytes, source, '#');
     while (!in.done()) {
@@ -53,9 +56,13 @@ Mesh parse_veg(std::string_view bytes, const std::string& source) {
         else if (word == "*ELEMENTS")
             read_elements(in, first, mesh);
         else if (word == "*INCLUDE")
-            in.fail("*INCLUDE is not supported", "put the vertices and elements into this file");
+            include = in.at(); // a set or a material may be in another file
         else
             in.line(); // materials, sets and regions
+    }
+    if (include && mesh.tetrahedra.empty()) {
+        in.seek(*include);
+        in.fail("*INCLUDE is not supported for vertices and elements", "put them into this file");
     }
     return mesh;
 }

@@ -11,6 +11,7 @@ struct File {
     bool binary = false;
     Mesh mesh = {};
     VtkCells cells = {};
+    MeshReading reading = {};
 };
 
 /// Runs `body` on text, or on big-endian binary data, which start on the next line.
@@ -25,7 +26,7 @@ void in_encoding(File& file, Body body) {
 
 void expect(Scanner& in, std::string_view wanted) {
     const auto word = in.token(wanted);
-    if (word != wanted)
+    if (!same_word(word, wanted))
         in.fail(fmt::format("expected {}, found {}", wanted, in_quotes(word)), "give an unstructured grid");
 }
 
@@ -44,10 +45,10 @@ void read_header(File& file) {
         in.fail("expected '# vtk DataFile Version'", "give a legacy VTK file");
     in.line(); // title
     const auto encoding = in.token("ASCII or BINARY");
-    if (encoding != "ASCII" && encoding != "BINARY")
+    file.binary = same_word(encoding, "BINARY");
+    if (!file.binary && !same_word(encoding, "ASCII"))
         in.fail(fmt::format("expected ASCII or BINARY, found {}", in_quotes(encoding)),
                 "export the file again");
-    file.binary = encoding == "BINARY";
     if (file.binary) in.count_bytes();
     expect(in, "DATASET");
     expect(in, "UNSTRUCTURED_GRID");
@@ -100,7 +101,7 @@ void read_cells(File& file) {
     const auto size = in.get<std::uint64_t>("the size of the cells");
     const auto start = in.at();
     in.line();
-    const bool offsets = in.text().substr(in.at()).starts_with("OFFSETS");
+    const bool offsets = same_word(in.text().substr(in.at(), 7), "OFFSETS");
     in.seek(start);
     if (offsets) return read_offsets(file, n, size);
     in_encoding(file, [&](auto& data) { read_rows(data, n, size, file); });
@@ -112,13 +113,40 @@ void read_cell_types(File& file) {
     if (n != file.cells.ends.size())
         in.fail(fmt::format("{} cell types for {} cells", n, file.cells.ends.size()),
                 "export the file again");
-    in_encoding(file, [&](auto& data) { read_types(data, Number::i32, file.cells, 0, file.mesh); });
+    in_encoding(file,
+                [&](auto& data) { read_types(data, Number::i32, file.cells, 0, file.reading, file.mesh); });
 }
 
 void skip_value(Scanner& in, Number) { in.token("a value of a field"); }
 
 void skip_value(Cursor& in, Number type) {
     for (std::size_t byte = 0; byte < size_of(type); ++byte) in.get<char>("a value of a field");
+}
+
+/// Strings in text: one on each line after the header's.
+void skip_strings(Scanner& in, std::uint64_t n) {
+    in.line();
+    for (std::uint64_t i = 0; i < n && !in.done(); ++i) in.line();
+}
+
+/// Strings in binary data: a length, then the characters. The two highest bits of the length tell its bytes.
+void skip_strings(Cursor& in, std::uint64_t n) {
+    for (std::uint64_t i = 0; i < n; ++i) {
+        const std::uint64_t first = in.get<std::uint8_t>("the length of a string");
+        std::uint64_t length = first & 63;
+        for (auto bytes = (std::uint64_t{1} << (3 - first / 64)) - 1; bytes > 0; --bytes)
+            length = length << 8 | in.get<std::uint8_t>("the length of a string");
+        for (; length > 0; --length) in.get<char>("a character of a string");
+    }
+}
+
+/// Bits: one number each in text, eight a byte in binary data.
+void skip_bits(Scanner& in, std::uint64_t n) {
+    for (std::uint64_t i = 0; i < n; ++i) in.token("a value of a field");
+}
+
+void skip_bits(Cursor& in, std::uint64_t n) {
+    for (std::uint64_t byte = 0; byte < (n + 7) / 8; ++byte) in.get<char>("a value of a field");
 }
 
 /// Skips the arrays of FIELD: name, components, tuples, type, data.
@@ -130,11 +158,20 @@ void skip_field(File& file) {
         in.token("the name of an array");
         const auto width = in.get<std::uint32_t>("the number of components");
         const auto tuples = in.get<std::uint32_t>("the number of tuples");
-        const auto type = get_type(in);
         const auto n = std::uint64_t{width} * tuples;
-        in_encoding(file, [&](auto& data) {
-            for (std::uint64_t v = 0; v < n; ++v) skip_value(data, type);
-        });
+        const auto start = in.at();
+        const auto name = in.token("a number type");
+        if (same_word(name, "string")) {
+            in_encoding(file, [&](auto& data) { skip_strings(data, n); });
+        } else if (same_word(name, "bit")) {
+            in_encoding(file, [&](auto& data) { skip_bits(data, n); });
+        } else {
+            in.seek(start);
+            const auto type = get_type(in);
+            in_encoding(file, [&](auto& data) {
+                for (std::uint64_t v = 0; v < n; ++v) skip_value(data, type);
+            });
+        }
     }
 }
 
@@ -146,25 +183,25 @@ void skip_metadata(Scanner& in) {
 
 } // namespace
 
-Mesh parse_vtk(std::string_view bytes, const std::string& source) {
-    File file{Scanner(bytes, source)};
+Mesh parse_vtk(std::string_view bytes, const std::string& source, const MeshReading& reading) {
+    File file{.in = Scanner(bytes, source), .reading = reading};
     auto& in = file.in;
     read_header(file);
     while (!in.done()) {
         const auto keyword = in.token("a keyword");
-        if (keyword == "POINTS") {
+        if (same_word(keyword, "POINTS")) {
             const auto n = in.get<std::uint64_t>("the number of points");
             const auto type = get_type(in);
             in_encoding(file, [&](auto& data) { read_points(data, type, n, file.mesh); });
-        } else if (keyword == "CELLS") {
+        } else if (same_word(keyword, "CELLS")) {
             read_cells(file);
-        } else if (keyword == "CELL_TYPES") {
+        } else if (same_word(keyword, "CELL_TYPES")) {
             read_cell_types(file);
-        } else if (keyword == "FIELD") {
+        } else if (same_word(keyword, "FIELD")) {
             skip_field(file);
-        } else if (keyword == "METADATA") {
+        } else if (same_word(keyword, "METADATA")) {
             skip_metadata(in);
-        } else if (keyword == "POINT_DATA" || keyword == "CELL_DATA") {
+        } else if (same_word(keyword, "POINT_DATA") || same_word(keyword, "CELL_DATA")) {
             break; // they follow the grid
         } else {
             in.fail(fmt::format("unknown keyword {}", in_quotes(keyword)),

@@ -25,6 +25,7 @@ constexpr std::array names = {
     Name{"UInt32", Number::u32},    Name{"unsigned_int", Number::u32},
     Name{"Int64", Number::i64},     Name{"vtktypeint64", Number::i64},
     Name{"UInt64", Number::u64},    Name{"vtktypeuint64", Number::u64},
+    Name{"long", Number::i64},      Name{"unsigned_long", Number::u64},
     Name{"vtkIdType", Number::i32}, // the legacy writer stores ids in 32 bits
 };
 
@@ -67,9 +68,14 @@ constexpr std::array<std::int64_t, 27> flat_cells = {0,  1,  2,  3,  4,  5,  6, 
 
 } // namespace
 
+bool same_word(std::string_view a, std::string_view b) {
+    const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
+    return std::ranges::equal(a, b, {}, lower, lower);
+}
+
 std::optional<Number> number_type(std::string_view name) {
     const auto found =
-        std::find_if(names.begin(), names.end(), [&](const Name& n) { return n.name == name; });
+        std::find_if(names.begin(), names.end(), [&](const Name& n) { return same_word(n.name, name); });
     return found == names.end() ? std::nullopt : std::optional(found->type);
 }
 
@@ -95,6 +101,24 @@ std::string_view volume_cell(std::int64_t type) {
     const auto found = std::find_if(volume_cells.begin(), volume_cells.end(),
                                     [&](const VtkCell& cell) { return cell.type == type; });
     return found == volume_cells.end() ? "unknown" : found->name;
+}
+
+Refusal refusal_of(std::int64_t type, std::uint64_t points, const MeshReading& reading) {
+    const bool is_linear = type == vtk_tetrahedron || (type == 71 && points == 4);
+    const bool is_curved = is_curved_tetrahedron(type);
+    if (is_linear || (is_curved ? reading.corners : reading.only_tetrahedra)) return {};
+    return {volume_cell(type), is_curved ? corners_remedy : only_remedy};
+}
+
+void add_cell(std::int64_t type, std::span<const std::uint32_t> points, std::size_t base, Mesh& mesh) {
+    if (type != vtk_tetrahedron && !is_curved_tetrahedron(type)) {
+        mesh.findings.other_cells += volume_cell(type).empty() ? 0 : 1;
+        return;
+    }
+    Tetrahedron corners{};
+    for (std::size_t i = 0; i < 4; ++i) corners[i] = static_cast<std::uint32_t>(base) + points[i];
+    mesh.tetrahedra.push_back(corners);
+    mesh.findings.reduced += points.size() > 4 ? 1 : 0;
 }
 
 double get_real(Scanner& in, Number, std::string_view what) { return in.get<double>(what); }

@@ -3,11 +3,13 @@
 
 #include "scenes/mesh.h"
 #include "scenes/read/cursor.h"
+#include "scenes/read/formats.h"
 #include "scenes/read/scanner.h"
 #include "scenes/read/vertex.h"
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -16,6 +18,9 @@ namespace tandem::read {
 
 /// The type of the numbers in an array. Text encodings ignore it.
 enum class Number { f32, f64, i8, u8, i16, u16, i32, u32, i64, u64 };
+
+/// Whether two words are equal but for the case of their letters, as VTK compares keywords.
+bool same_word(std::string_view a, std::string_view b);
 
 /// The type by its name in either format: float, Float32, vtktypeint64, ...
 std::optional<Number> number_type(std::string_view name);
@@ -30,12 +35,26 @@ std::int64_t get_whole(Cursor& in, Number type, std::string_view what);
 struct VtkCells {
     std::vector<std::uint32_t> vertices;
     std::vector<std::uint64_t> ends;
+    std::vector<std::uint8_t> ghosts = {}; ///< bits of vtkGhostType, one row a cell; empty: none
 };
 
 /// The name of a volume cell, or "unknown". Returns "" for a cell of lower dimension, which is skipped.
 std::string_view volume_cell(std::int64_t type);
 
 constexpr std::int64_t vtk_tetrahedron = 10;
+
+/// The bits of vtkGhostType that leave a cell out: DUPLICATECELL and HIDDENCELL, from VTK's
+/// vtkDataSetAttributes.h.
+constexpr unsigned vtk_left_out = 1 | 32;
+
+/// Whether a cell of this type is a tetrahedron of an order above one. Its first four points are the corners.
+constexpr bool is_curved_tetrahedron(std::int64_t type) { return type == 24 || type == 71 || type == 78; }
+
+/// The name of a cell that `reading` refuses, with its remedy; empty: it is read or skipped.
+struct Refusal {
+    std::string_view name, remedy;
+};
+Refusal refusal_of(std::int64_t type, std::uint64_t points, const MeshReading& reading);
 
 template<class In>
 void read_points(In& in, Number type, std::uint64_t n, Mesh& mesh) {
@@ -73,26 +92,31 @@ void read_ends(In& in, Number type, std::uint64_t n, VtkCells& cells) {
     }
 }
 
+/// Adds a cell that is not refused: tetrahedra to the mesh, others to its findings.
+void add_cell(std::int64_t type, std::span<const std::uint32_t> points, std::size_t base, Mesh& mesh);
+
 /// Reads the types of all cells and keeps the tetrahedra, whose vertex numbers count from `base`.
 template<class In>
-void read_types(In& in, Number type, const VtkCells& cells, std::size_t base, Mesh& mesh) {
+void read_types(In& in, Number type, const VtkCells& cells, std::size_t base, const MeshReading& reading,
+                Mesh& mesh) {
     in.check_count(cells.ends.size(), 1, size_of(type), "cell types");
     std::uint64_t begin = 0;
-    for (const auto end : cells.ends) {
+    for (std::size_t i = 0; i < cells.ends.size(); ++i) {
         const auto kind = get_whole(in, type, "a cell type");
-        const auto foreign = kind == vtk_tetrahedron ? "" : volume_cell(kind);
-        if (!foreign.empty())
-            in.fail(fmt::format("cells of type {} ({}) are not linear tetrahedra", kind, foreign),
-                    "split them into linear tetrahedra (type 10)");
-        if (kind == vtk_tetrahedron) {
-            if (end - begin != 4)
-                in.fail(fmt::format("a tetrahedron has {} vertices", end - begin), "export the file again");
-            Tetrahedron corners{};
-            for (std::size_t i = 0; i < 4; ++i)
-                corners[i] = static_cast<std::uint32_t>(base) + cells.vertices[begin + i];
-            mesh.tetrahedra.push_back(corners);
+        const auto points = std::span(cells.vertices).subspan(begin, cells.ends[i] - begin);
+        begin = cells.ends[i];
+        if (!cells.ghosts.empty() && (cells.ghosts[i] & vtk_left_out) != 0) {
+            ++mesh.findings.ghosts;
+            continue;
         }
-        begin = end;
+        const auto refusal = refusal_of(kind, points.size(), reading);
+        if (!refusal.name.empty())
+            in.fail(fmt::format("cells of type {} ({}) are not linear tetrahedra", kind, refusal.name),
+                    refusal.remedy);
+        if ((kind == vtk_tetrahedron && points.size() != 4)
+            || (is_curved_tetrahedron(kind) && points.size() < 4))
+            in.fail(fmt::format("a tetrahedron has {} vertices", points.size()), "export the file again");
+        add_cell(kind, points, base, mesh);
     }
 }
 

@@ -17,6 +17,7 @@ struct Piece {
     std::optional<Tag> connectivity = {};
     std::optional<Tag> offsets = {};
     std::optional<Tag> types = {};
+    std::optional<Tag> ghosts = {};
 };
 
 Tag read_root(Xml& xml) {
@@ -31,6 +32,7 @@ Tag read_root(Xml& xml) {
 void add_array(Piece& piece, std::string_view section, const Tag& array) {
     const auto name = array.get("Name");
     if (section == "Points") piece.points = array;
+    if (section == "CellData" && name == "vtkGhostType") piece.ghosts = array;
     if (section != "Cells") return;
     if (name == "connectivity") piece.connectivity = array;
     if (name == "offsets") piece.offsets = array;
@@ -45,9 +47,9 @@ std::vector<Piece> read_structure(Xml& xml, VtuData& data) {
     while (const auto tag = xml.next()) {
         if (tag->name == "Piece") {
             pieces.push_back({*tag});
-        } else if (tag->name == "Points" || tag->name == "Cells") {
+        } else if (tag->name == "Points" || tag->name == "Cells" || tag->name == "CellData") {
             section = tag->name;
-        } else if (tag->name == "/Points" || tag->name == "/Cells") {
+        } else if (tag->name == "/Points" || tag->name == "/Cells" || tag->name == "/CellData") {
             section = "";
         } else if (tag->name == "DataArray" && !pieces.empty()) {
             add_array(pieces.back(), section, *tag);
@@ -74,7 +76,15 @@ std::uint64_t get_count(const Xml& xml, const Tag& piece, std::string_view attri
     return count;
 }
 
-void read_piece(const Xml& xml, const VtuData& data, const Piece& piece, Mesh& mesh) {
+template<class In>
+void read_ghosts(In& in, Number type, std::uint64_t n, VtkCells& cells) {
+    in.check_count(n, 1, size_of(type), "bits of vtkGhostType");
+    for (std::uint64_t i = 0; i < n; ++i)
+        cells.ghosts.push_back(static_cast<std::uint8_t>(get_whole(in, type, "bits of vtkGhostType")));
+}
+
+void read_piece(const Xml& xml, const VtuData& data, const Piece& piece, const MeshReading& reading,
+                Mesh& mesh) {
     const auto points = get_count(xml, piece.tag, "NumberOfPoints");
     const auto count = get_count(xml, piece.tag, "NumberOfCells");
     if (points == 0 && count == 0) return;
@@ -88,16 +98,19 @@ void read_piece(const Xml& xml, const VtuData& data, const Piece& piece, Mesh& m
     data.with_array(*piece.connectivity, [&](auto& in, Number type) {
         read_connectivity(in, type, cells.ends.back(), points, cells);
     });
-    data.with_array(*piece.types, [&](auto& in, Number type) { read_types(in, type, cells, base, mesh); });
+    if (piece.ghosts)
+        data.with_array(*piece.ghosts, [&](auto& in, Number type) { read_ghosts(in, type, count, cells); });
+    data.with_array(*piece.types,
+                    [&](auto& in, Number type) { read_types(in, type, cells, base, reading, mesh); });
 }
 
 } // namespace
 
-Mesh parse_vtu(std::string_view bytes, const std::string& source) {
+Mesh parse_vtu(std::string_view bytes, const std::string& source, const MeshReading& reading) {
     Xml xml(bytes, source);
     VtuData data(xml, read_root(xml));
     Mesh mesh;
-    for (const auto& piece : read_structure(xml, data)) read_piece(xml, data, piece, mesh);
+    for (const auto& piece : read_structure(xml, data)) read_piece(xml, data, piece, reading, mesh);
     return mesh;
 }
 

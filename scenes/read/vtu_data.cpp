@@ -5,9 +5,54 @@
 
 #include <algorithm>
 #include <charconv>
+#include <array>
+#include <limits>
+#include <lz4.h>
+#include <lzma.h>
 #include <zlib.h>
 
 namespace tandem::read {
+
+/// One compressor of VTK. `unpack` fills `to` from `from`; false unless it is filled exactly.
+struct Compressor {
+    std::string_view name;
+    std::uint64_t best_ratio; ///< of bytes to packed bytes
+    bool (*unpack)(std::string_view from, std::span<char> to);
+};
+
+namespace {
+
+bool unpack_zlib(std::string_view from, std::span<char> to) {
+    uLongf got = to.size();
+    const auto status = uncompress(reinterpret_cast<Bytef*>(to.data()), &got,
+                                   reinterpret_cast<const Bytef*>(from.data()), from.size());
+    return status == Z_OK && got == to.size();
+}
+
+bool unpack_lz4(std::string_view from, std::span<char> to) {
+    constexpr std::size_t most = std::numeric_limits<int>::max();
+    if (from.size() > most || to.size() > most) return false;
+    const auto got = LZ4_decompress_safe(from.data(), to.data(), static_cast<int>(from.size()),
+                                         static_cast<int>(to.size()));
+    return got >= 0 && static_cast<std::size_t>(got) == to.size();
+}
+
+bool unpack_lzma(std::string_view from, std::span<char> to) {
+    std::uint64_t memory = std::uint64_t{1} << 30;
+    std::size_t taken = 0, got = 0;
+    const auto status = lzma_stream_buffer_decode(
+        &memory, 0, nullptr, reinterpret_cast<const std::uint8_t*>(from.data()), &taken, from.size(),
+        reinterpret_cast<std::uint8_t*>(to.data()), &got, to.size());
+    return status == LZMA_OK && got == to.size();
+}
+
+/// The ratio of deflate is by zlib's technical notes, that of LZ4 by its format (255 bytes a byte of length).
+/// That of LZMA is a bound above what zeros reach.
+constexpr std::array compressors = {Compressor{"vtkZLibDataCompressor", 1032, unpack_zlib},
+                                    Compressor{"vtkLZ4DataCompressor", 256, unpack_lz4},
+                                    Compressor{"vtkLZMADataCompressor", 1 << 14, unpack_lzma}};
+
+} // namespace
 
 VtuData::VtuData(const Xml& xml, const Tag& file) : xml_(xml) {
     const auto order = file.get("byte_order", "LittleEndian");
@@ -20,10 +65,11 @@ VtuData::VtuData(const Xml& xml, const Tag& file) : xml_(xml) {
                  "save with UInt32 or UInt64");
     header_size_ = header == "UInt32" ? 4 : 8;
     const auto compressor = file.get("compressor");
-    if (!compressor.empty() && compressor != "vtkZLibDataCompressor")
+    if (compressor.empty()) return;
+    compressor_ = std::ranges::find(compressors, compressor, &Compressor::name);
+    if (compressor_ == compressors.end())
         xml.fail(file.at, fmt::format("compressor {} is not supported", in_quotes(compressor)),
                  "save with vtkZLibDataCompressor or without compression");
-    compressed_ = !compressor.empty();
 }
 
 void VtuData::set_appended(const Tag& tag) {
@@ -91,7 +137,7 @@ std::uint64_t VtuData::header_value(std::string_view data, std::size_t i) const 
 
 /// Decodes a block: a header with the number of bytes, then the bytes.
 std::string VtuData::decode(const Block& block) const {
-    if (compressed_) return inflate(block);
+    if (compressor_ != nullptr) return inflate(block);
     const auto bytes = header_value(head(block, header_size_), 0);
     if (bytes > block.stored.size()) head(block, bytes); // fails; the sum below could wrap
     return head(block, header_size_ + bytes).substr(header_size_);
@@ -113,8 +159,7 @@ std::string VtuData::inflate(const Block& block) const {
     }
     const auto data = head(block, stored);
     const auto whole = header_value(header, 1), last = header_value(header, 2);
-    constexpr std::uint64_t best_ratio = 1032; // largest ratio of deflate, by zlib's technical notes
-    const auto most = best_ratio * data.size();
+    const auto most = compressor_->best_ratio * data.size();
     const auto end = last != 0 ? std::min(last, whole) : whole;
     if (end > most || (parts > 1 && whole > most / (parts - 1)))
         xml_.fail(block.tag, fmt::format("{} bytes cannot contain {} parts of {}", data.size(), parts, whole),
@@ -126,10 +171,7 @@ std::string VtuData::inflate(const Block& block) const {
         const auto bytes = i + 1 == parts ? end : whole;
         const auto begin = result.size();
         result.resize(begin + bytes);
-        uLongf got = bytes;
-        const auto status = uncompress(reinterpret_cast<Bytef*>(result.data() + begin), &got,
-                                       reinterpret_cast<const Bytef*>(data.data() + at), size);
-        if (status != Z_OK || got != bytes)
+        if (!compressor_->unpack(std::string_view(data).substr(at, size), std::span(result).subspan(begin)))
             xml_.fail(block.tag, fmt::format("part {} does not decompress", i),
                       "copy or export the file again");
         at += size;

@@ -10,6 +10,8 @@
 
 namespace tandem::read {
 
+struct Compressor;
+
 /// The data arrays of a .vtu file: text, base64 or raw binary; inline or appended; compressed or not.
 class VtuData {
 public:
@@ -41,8 +43,8 @@ private:
     const Xml& xml_;
     std::endian order_ = std::endian::little;
     std::size_t header_size_ = 4;
-    bool compressed_ = false;
-    std::size_t appended_ = 0; ///< position of the first byte after '_'; 0: no AppendedData
+    const Compressor* compressor_ = nullptr; ///< null: not compressed
+    std::size_t appended_ = 0;               ///< position of the first byte after '_'; 0: no AppendedData
     bool appended_base64_ = false;
 };
 

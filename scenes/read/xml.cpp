@@ -32,6 +32,15 @@ std::size_t Xml::find(std::string_view end, std::size_t from, std::size_t tag) c
     return at;
 }
 
+/// The '>' of the tag at `open`. Values in quotes may contain others.
+std::size_t Xml::end_of_tag(std::size_t open) const {
+    for (auto at = open;;) {
+        const auto stop = text_.find_first_of(">\"'", at);
+        if (stop == std::string_view::npos || text_[stop] == '>') return find(">", at, open);
+        at = find(text_.substr(stop, 1), stop + 1, open) + 1;
+    }
+}
+
 /// Skips comments, declarations and processing instructions.
 std::optional<Tag> Xml::next() {
     while (true) {
@@ -43,7 +52,7 @@ std::optional<Tag> Xml::next() {
         } else if (rest.starts_with("<?") || rest.starts_with("<!")) {
             at_ = find(">", open, open) + 1;
         } else {
-            const auto close = find(">", open, open);
+            const auto close = end_of_tag(open);
             at_ = close + 1;
             Tag tag{"", open, at_, text_[close - 1] == '/'};
             read_attributes(tag, text_.substr(open + 1, close - open - 1 - (tag.closed ? 1 : 0)));

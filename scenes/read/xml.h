@@ -35,6 +35,7 @@ public:
     const std::string& source() const { return source_; }
 
 private:
+    std::size_t end_of_tag(std::size_t open) const;
     std::size_t find(std::string_view end, std::size_t from, std::size_t tag) const;
     void read_attributes(Tag& tag, std::string_view inside) const;
 

@@ -43,6 +43,6 @@ private:
 /// The scene of a recording. make_scene() of its specification gives meshes and bodies; frames are read from
 /// the recording on demand. The name is the file's without folder and suffix; the digest covers the scene's
 /// digest and every frame's checksum. Throws InputError, also when the scene differs from the recorded one.
-Scene load_recording(const std::string& path);
+Scene load_recording(const std::string& path, const MeshReading& reading = {});
 
 } // namespace tandem

@@ -65,7 +65,7 @@ void check_specification(const RecordingHeader& header, const std::filesystem::p
 }
 
 /// Recreates the recorded scene. Errors name the recording.
-Scene recreate_scene(const Recording& recording) {
+Scene recreate_scene(const Recording& recording, const MeshReading& reading) {
     const auto& header = recording.header();
     const auto fail = [&](std::string_view what) {
         throw InputError(fmt::format("{}: {}", recording.path(), what));
@@ -73,7 +73,7 @@ Scene recreate_scene(const Recording& recording) {
     check_specification(header, recording.path());
     Scene scene;
     try {
-        scene = make_scene(header.specification);
+        scene = make_scene(header.specification, reading);
     } catch (const InputError& error) {
         fail(fmt::format("its scene cannot be made again: {}", error.what()));
     }
@@ -96,9 +96,9 @@ std::uint64_t digest_of(const Recording& recording) {
 
 } // namespace
 
-Scene load_recording(const std::string& path) {
+Scene load_recording(const std::string& path, const MeshReading& reading) {
     const auto recording = std::make_shared<const Recording>(path);
-    auto scene = recreate_scene(*recording);
+    auto scene = recreate_scene(*recording, reading);
     if (recording->frames() == 0) throw InputError(recording->end());
     scene.name = std::filesystem::path(path).stem().string();
     scene.digest = digest_of(*recording);

@@ -68,7 +68,9 @@ ElasticMesh make_elastic_mesh(const Mesh& mesh, const Elastic& elastic, double d
     result.mu = elastic.young / (2 * (1 + elastic.poisson));
     result.lambda = elastic.young * elastic.poisson / ((1 + elastic.poisson) * (1 - 2 * elastic.poisson));
     result.damping = elastic.damping;
-    for (const auto& t : mesh.tetrahedra) {
+    for (std::uint32_t number = 0; number < mesh.tetrahedra.size(); ++number) {
+        if (is_merged(mesh, number)) continue;
+        const auto& t = mesh.tetrahedra[number];
         const Eigen::Matrix3d rest = edges(t, mesh.vertices);
         const double det = determinant(rest);
         // A flat element has no deformation gradient and no volume, hence no energy.

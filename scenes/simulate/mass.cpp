@@ -43,7 +43,9 @@ bool definite(const Eigen::Matrix3d& m) {
 MassProperties mass_properties(const Mesh& mesh, double density) {
     MassProperties result;
     Eigen::Vector3d first = Eigen::Vector3d::Zero();
-    for (const auto& t : mesh.tetrahedra) {
+    for (std::uint32_t number = 0; number < mesh.tetrahedra.size(); ++number) {
+        if (is_merged(mesh, number)) continue;
+        const auto& t = mesh.tetrahedra[number];
         const double mass = tetrahedron_volume(mesh, t) * density;
         result.mass += mass;
         for (const auto vertex : t) first += mesh.vertices[vertex] * (mass / 4);
@@ -54,7 +56,9 @@ MassProperties mass_properties(const Mesh& mesh, double density) {
     result.centre = first / result.mass;
     // Integrates about the centre of mass, which avoids cancellation for meshes far from their origin.
     Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
-    for (const auto& t : mesh.tetrahedra) {
+    for (std::uint32_t number = 0; number < mesh.tetrahedra.size(); ++number) {
+        if (is_merged(mesh, number)) continue;
+        const auto& t = mesh.tetrahedra[number];
         std::array<Eigen::Vector3d, 4> corners;
         for (std::size_t i = 0; i < 4; ++i) corners[i] = mesh.vertices[t[i]] - result.centre;
         moment += second_moment(corners, tetrahedron_volume(mesh, t) * density);

@@ -47,6 +47,7 @@ TEST(Veg, BadInput) {
                    "vertex 9 is out of order");
     expect_failure("cut.veg", example.substr(0, example.find("6 0.1")) + "6 0.1 0.2", ":9",
                    "the file ends before");
+    expect_example(read_mesh(write_file("set.veg", example + "*SET fixed\n*INCLUDE other.txt\n")), false);
     expect_failure("include.veg", "*VERTICES\n0 3 0 0\n*INCLUDE other.veg\n", ":3",
                    "*INCLUDE is not supported");
     expect_failure("early.veg", "*ELEMENTS\nTET\n", ":1", "before *VERTICES");

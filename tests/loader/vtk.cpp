@@ -3,6 +3,7 @@
 #include "scenes/mesh.h"
 
 #include <algorithm>
+#include <cctype>
 #include <gtest/gtest.h>
 #include <limits>
 
@@ -93,6 +94,37 @@ TEST(Vtk, Ascii) {
 TEST(Vtk, Binary) {
     expect_example(read_mesh(write_file("rows.vtk", binary_rows())), false);
     expect_example(read_mesh(write_file("offsets.vtk", binary_offsets())), true);
+}
+
+TEST(Vtk, LowerCaseKeywords) {
+    auto text = replaced(rows, "ASCII", "ascii");
+    for (const auto* word : {"DATASET UNSTRUCTURED_GRID", "POINTS", "CELLS", "CELL_TYPES", "FIELD"}) {
+        std::string lower(word);
+        std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
+        text = replaced(text, word, lower);
+    }
+    expect_example(read_mesh(write_file("lower.vtk", text)), false);
+}
+
+TEST(Vtk, LagrangeTetrahedraOfFourPoints) {
+    expect_example(read_mesh(write_file("lagrange.vtk", replaced(rows, "5\n10\n10", "5\n71\n10"))), false);
+}
+
+TEST(Vtk, FieldsOfOtherTypes) {
+    const std::string field = "FIELD FieldData 1\nTIME 1 2 double\nnan 0\n";
+    for (const auto* type :
+         {"long\n-7 8\n", "unsigned_long\n7 8\n", "bit\n1 0\n", "string\none more\ntwo\n"}) {
+        const auto other = std::string("FIELD FieldData 1\nTIME 1 2 ") + type;
+        expect_example(read_mesh(write_file("field.vtk", replaced(rows, field, other))), false);
+    }
+    const auto binary = "TIME 1 1 double\n" + big<double>(7);
+    const auto with = [&](const std::string& array) {
+        return write_file("field.vtk", replaced(binary_rows(), binary, array));
+    };
+    expect_example(read_mesh(with("TIME 1 1 long\n" + big<std::int64_t>(7))), false);
+    expect_example(read_mesh(with("BITS 1 9 bit\n" + std::string("\xff\x80", 2))), false);
+    // The two highest bits of a length are 3 for one byte, 2 for two bytes.
+    expect_example(read_mesh(with("WORDS 1 2 string\n" + std::string("\xc3one\x80\x05three", 11))), false);
 }
 
 TEST(Vtk, OtherCells) {

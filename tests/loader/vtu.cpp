@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <limits>
+#include <lz4.h>
+#include <lzma.h>
 #include <zlib.h>
 
 namespace tandem::loader {
@@ -31,6 +33,7 @@ struct Encoding {
     bool wide = false;     ///< 64-bit headers, Float64 and Int64; otherwise 32 bits, Float32 and Int32
     bool big = false;      ///< big-endian
     std::size_t part = 24; ///< bytes per compressed block
+    enum { zlib, lz4, lzma } packer = zlib;
 };
 
 template<class T>
@@ -44,6 +47,26 @@ std::string header(std::uint64_t value, const Encoding& how) {
     return how.wide ? number(value, how) : number(static_cast<std::uint32_t>(value), how);
 }
 
+std::string packed(const std::string& part, const Encoding& how) {
+    std::string bytes(2 * compressBound(part.size()) + 1024, '\0'); // enough for all of them
+    if (how.packer == Encoding::lz4) {
+        const auto size = LZ4_compress_default(part.data(), bytes.data(), static_cast<int>(part.size()),
+                                               static_cast<int>(bytes.size()));
+        return bytes.substr(0, static_cast<std::size_t>(size));
+    }
+    if (how.packer == Encoding::lzma) {
+        std::size_t size = 0;
+        lzma_easy_buffer_encode(6, LZMA_CHECK_CRC32, nullptr,
+                                reinterpret_cast<const std::uint8_t*>(part.data()), part.size(),
+                                reinterpret_cast<std::uint8_t*>(bytes.data()), &size, bytes.size());
+        return bytes.substr(0, size);
+    }
+    uLongf size = bytes.size();
+    compress(reinterpret_cast<Bytef*>(bytes.data()), &size, reinterpret_cast<const Bytef*>(part.data()),
+             part.size());
+    return bytes.substr(0, size);
+}
+
 std::string block(const std::string& data, const Encoding& how) {
     const bool text = how.format != Encoding::raw;
     if (!how.compressed) {
@@ -53,13 +76,9 @@ std::string block(const std::string& data, const Encoding& how) {
     std::string sizes, parts;
     std::size_t count = 0;
     for (std::size_t at = 0; at < data.size(); at += how.part, ++count) {
-        const auto part = data.substr(at, how.part);
-        std::string packed(compressBound(part.size()), '\0');
-        uLongf size = packed.size();
-        compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(part.data()),
-                 part.size());
-        parts += packed.substr(0, size);
-        sizes += header(size, how);
+        const auto one = packed(data.substr(at, how.part), how);
+        parts += one;
+        sizes += header(one.size(), how);
     }
     const auto head =
         header(count, how) + header(how.part, how) + header(data.size() % how.part, how) + sizes;
@@ -101,7 +120,9 @@ struct Example {
             "<?xml version=\"1.0\"?>\n<!-- <Piece> -->\n<VTKFile type=\"UnstructuredGrid\" byte_order=\"";
         text += how.big ? "BigEndian" : "LittleEndian";
         text += how.wide ? "\" header_type=\"UInt64\"" : "\"";
-        text += how.compressed ? " compressor=\"vtkZLibDataCompressor\">\n" : ">\n";
+        const std::string compressors[] = {"ZLib", "LZ4", "LZMA"};
+        text +=
+            how.compressed ? " compressor=\"vtk" + compressors[how.packer] + "DataCompressor\">\n" : ">\n";
         text += "<UnstructuredGrid>\n<Piece NumberOfPoints=\"6\" NumberOfCells=\"3\">\n<PointData>\n";
         text += "<DataArray type=\"Float32\" Name=\"s\" "
                 "format=\"ascii\">nan</DataArray>\n</PointData>\n<Points>\n";
@@ -121,6 +142,37 @@ struct Example {
 std::string ascii() {
     auto text = Example().file({.format = Encoding::ascii, .wide = true});
     return replaced(text, "-0.000000", "-3e-7");
+}
+
+TEST(Vtu, OtherCompressors) {
+    for (const auto packer : {Encoding::lz4, Encoding::lzma}) {
+        const auto text = Example().file({.format = Encoding::inlined, .compressed = true, .packer = packer});
+        expect_example(read_mesh(write_file("packed.vtu", text)), true);
+        const auto other = packer == Encoding::lz4 ? "vtkLZMAData" : "vtkLZ4Data";
+        expect_failure("other.vtu",
+                       replaced(text, packer == Encoding::lz4 ? "vtkLZ4Data" : "vtkLZMAData", other), ":",
+                       "");
+    }
+}
+
+/// Bits 1 and 32 of vtkGhostType leave a cell out, others do not.
+TEST(Vtu, GhostCells) {
+    const auto with = [](const std::string& bits) {
+        const auto data = "<CellData>\n<DataArray type=\"UInt8\" Name=\"vtkGhostType\" format=\"ascii\">"
+                          + bits + "</DataArray>\n</CellData>\n<Points>";
+        return write_file("ghosts.vtu", replaced(ascii(), "<Points>", data));
+    };
+    expect_example(read_mesh(with("1 0 4")), false);
+    for (const auto* bits : {"0 0 1", "0 0 32", "0 2 33"}) {
+        const auto mesh = read_mesh(with(bits));
+        EXPECT_EQ(mesh.tetrahedra, (std::vector<Tetrahedron>{{0, 1, 2, 3}})) << bits;
+        EXPECT_EQ(mesh.findings.ghosts, 1u);
+    }
+}
+
+TEST(Vtu, AngleInQuotes) {
+    expect_example(read_mesh(write_file("quoted.vtu", replaced(ascii(), "Name=\"s\"", "Name=\"a > 'b'\""))),
+                   false);
 }
 
 TEST(Vtu, Ascii) { expect_example(read_mesh(write_file("ascii.vtu", ascii())), false); }

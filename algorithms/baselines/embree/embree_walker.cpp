@@ -71,7 +71,7 @@ bool EmbreeWalker::PairTask::keep_self_pair(RTCCollision& pair) const {
     if (pair.primID0 >= pair.primID1) return false;
     const auto& mesh = walker.trees_.bodies().mesh(a);
     const auto vertices_of = [&](std::size_t item) {
-        return std::span(mesh.tetrahedra).subspan(4 * item, 4);
+        return std::span(mesh.topology()).subspan(4 * item, 4);
     };
     const auto other = vertices_of(pair.primID1);
     for (const auto vertex : vertices_of(pair.primID0))

@@ -3,6 +3,7 @@
 #include "harness/plans/device_groups.h"
 #include "harness/commands/options/actions.h"
 #include "harness/commands/options/contradictions.h"
+#include "harness/commands/options/reading.h"
 #include "harness/commands/options/sets.h"
 #include "harness/commands/commands.h"
 #include "harness/sampling/isolation/isolated_sampler.h"
@@ -45,6 +46,7 @@ void add_cell_options(CLI::App& app, RunOptions& options, std::vector<std::strin
                    "\"tx ty tz qw qx qy qz\", one per --mesh, in order (default: identity)")
         ->expected(1)
         ->take_all();
+    add_reading_options(app, options.reading);
     app.add_option("--algorithm", options.request.algorithms,
                    "A,B or all (see 'tandem algorithms'; default: all)")
         ->delimiter(',');

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// report and view: HTML pages, written by the package python/tandem/report.
+// report, view and convert, which are written in Python.
 #include "harness/commands/options/external_options.h"
+#include "harness/commands/options/reading.h"
 
 #include <CLI/CLI.hpp>
 
@@ -17,6 +18,7 @@ void add_scene_options(CLI::App& app, CLI::Option* scene) {
     with(add_external_option(app, "--frames", "FIRST:LAST, both inclusive (default: all)"));
     with(add_external_option(app, "--every", "show every Nth of these frames only (default: 1)"))
         ->check(CLI::Range(1, 1000000));
+    for (auto* option : add_external_reading_options(app)) with(option);
     auto* contacts = with(add_external_flag(app, "--contacts", "show contacts and normals in every frame"));
     add_external_option(app, "--device", "the device that finds contacts (default: host)")->needs(contacts);
 }
@@ -48,6 +50,12 @@ Action add_view(CLI::App& app) {
         ->take_all();
     add_external_option(app, "-o,--output", "the HTML file to write (default: named after the scene)");
     add_scene_options(app, nullptr);
+    return run_external_action(app);
+}
+
+Action add_convert(CLI::App& app) {
+    add_external_option(app, "file", "a mesh file that meshio reads, or a .tet file")->required();
+    add_external_option(app, "-o,--output", "the .vtu file to write")->required();
     return run_external_action(app);
 }
 

@@ -3,6 +3,7 @@
 #include "algorithms/parameters/table.h"
 #include "harness/plans/device_groups.h"
 #include "harness/commands/options/actions.h"
+#include "harness/commands/options/reading.h"
 #include "harness/commands/options/sets.h"
 #include "harness/commands/commands.h"
 
@@ -18,6 +19,7 @@ namespace {
 void add_motion_options(CLI::App& app, SimulateOptions& options) {
     app.add_option("scene", options.scene,
                    "NAME, NAME:par=value,... or a scene description with dynamics (.json)");
+    add_reading_options(app, options.reading);
     app.add_option("-o,--output", options.recording, "record the frames in this file, FILE.frames");
     app.add_option("--steps", options.steps, "total number of steps (default: the scene's own number)")
         ->check(CLI::Range(std::size_t{1}, std::size_t{100000000}));
@@ -100,6 +102,7 @@ Action add_export(CLI::App& app) {
                    "\"tx ty tz qw qx qy qz\", one per --mesh, in order (default: identity)")
         ->expected(1)
         ->take_all();
+    add_reading_options(app, options.reading);
     app.add_option("--frames", options.frames, "FIRST:LAST, both inclusive (default: all)");
     app.add_option("--every", options.every, "export every Nth of these frames only (default: 1)")
         ->check(CLI::Range(1, 1000000));

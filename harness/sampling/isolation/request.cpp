@@ -14,6 +14,10 @@ nlohmann::json options_json(const RunOptions& options) {
             {"poses", options.poses},
             {"frames", options.frames},
             {"degenerate", static_cast<int>(options.degenerate)},
+            {"duplicates", static_cast<int>(options.reading.duplicates)},
+            {"weld", options.reading.weld ? nlohmann::json(*options.reading.weld) : nlohmann::json()},
+            {"corners", options.reading.corners},
+            {"only_tetrahedra", options.reading.only_tetrahedra},
             {"memory", options.memory},
             {"truth", static_cast<int>(options.truth)},
             {"truth_contacts", options.truth_contacts},
@@ -26,6 +30,10 @@ void read_options(RunOptions& options, const nlohmann::json& json) {
     json.at("poses").get_to(options.poses);
     json.at("frames").get_to(options.frames);
     options.degenerate = static_cast<Degenerate>(json.at("degenerate").get<int>());
+    options.reading.duplicates = static_cast<Duplicates>(json.at("duplicates").get<int>());
+    if (!json.at("weld").is_null()) options.reading.weld = json.at("weld").get<double>();
+    json.at("corners").get_to(options.reading.corners);
+    json.at("only_tetrahedra").get_to(options.reading.only_tetrahedra);
     json.at("memory").get_to(options.memory);
     options.truth = static_cast<TruthAmount>(json.at("truth").get<int>());
     json.at("truth_contacts").get_to(options.truth_contacts);

@@ -34,8 +34,7 @@ public:
 
     std::size_t count() const { return world_.size(); }
     Boxes boxes(std::size_t body) const {
-        const std::span<const std::uint32_t> none;
-        return Boxes(world_[body], frame_.skipped.empty() ? none : frame_.skipped[body], off_[body]);
+        return Boxes(world_[body], skipped_in(scene_, frame_, body), off_[body]);
     }
     Decision decided(const Pair& pair) const {
         if (posed_) return decide(posed(pair.body_a, pair.tet_a), posed(pair.body_b, pair.tet_b));

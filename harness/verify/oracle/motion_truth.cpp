@@ -55,9 +55,7 @@ private:
     const Mesh& mesh(std::size_t body) const { return scene_.meshes[scene_.bodies[body].mesh]; }
 
     Boxes boxes_at(unsigned end, std::size_t body, double off) const {
-        const auto& skipped = frames_[end]->skipped;
-        const std::span<const std::uint32_t> none;
-        return Boxes(world_[end][body], skipped.empty() ? none : skipped[body], off);
+        return Boxes(world_[end][body], skipped_in(scene_, *frames_[end], body), off);
     }
 
     /// Whether the body turns the other way; both for a turn of 180 degrees.

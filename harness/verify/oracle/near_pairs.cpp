@@ -38,11 +38,12 @@ void for_near_pairs_of(const Scene& scene, const std::vector<Boxes>& boxes, Body
         for_near_pairs(boxes[a], boxes[b], visit);
         return;
     }
-    const auto& tetrahedra = scene.meshes[scene.bodies[a].mesh].tetrahedra;
+    const auto& mesh = scene.meshes[scene.bodies[a].mesh];
     for_near_pairs(boxes[a], boxes[a], [&](std::uint32_t t, std::uint32_t u) {
         if (t >= u) return; // the other order of each pair, and a tetrahedron with itself
-        for (const auto vertex : tetrahedra[t])
-            if (std::ranges::find(tetrahedra[u], vertex) != tetrahedra[u].end()) return;
+        const auto other = joined(mesh, mesh.tetrahedra[u]);
+        for (const auto vertex : joined(mesh, mesh.tetrahedra[t]))
+            if (std::ranges::find(other, vertex) != other.end()) return;
         visit(t, u);
     });
 }

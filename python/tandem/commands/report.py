@@ -20,7 +20,10 @@ def _parsed(arguments):
     parser.add_argument("--scene")
     parser.add_argument("--frames")
     parser.add_argument("--every")
-    parser.add_argument("--contacts", action="store_true")
+    for name in ("contacts", "corners", "only-tetrahedra"):
+        parser.add_argument(f"--{name}", action="store_true")
+    for name in ("duplicates", "weld"):
+        parser.add_argument(f"--{name}")
     parser.add_argument("--device")
     return parser.parse_args(arguments)
 

@@ -14,9 +14,10 @@ def _parsed(arguments):
     parser.add_argument("scene", nargs="?")
     for name in ("mesh", "pose"):
         parser.add_argument(f"--{name}", action="append")
-    for name in ("output", "frames", "every", "device"):
+    for name in ("output", "frames", "every", "device", "duplicates", "weld"):
         parser.add_argument(f"--{name}")
-    parser.add_argument("--contacts", action="store_true")
+    for name in ("contacts", "corners", "only-tetrahedra"):
+        parser.add_argument(f"--{name}", action="store_true")
     return parser.parse_args(arguments)
 
 

@@ -11,7 +11,8 @@ import tempfile
 from ..errors import BadUse, OutputError
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-OPTIONS = ("mesh", "pose", "frames", "every", "device")
+OPTIONS = ("mesh", "pose", "frames", "every", "device", "duplicates", "weld")
+FLAGS = ("contacts", "corners", "only_tetrahedra")
 
 
 class ExportEnded(Exception):
@@ -63,13 +64,13 @@ class _SignalForwarder:
 
 
 def words_of(scene, options):
-    """Arguments of tandem export for the options mesh, pose, frames, every, device and contacts of a command line. Absent options are None."""
+    """Arguments of tandem export for those options of a command line. Absent options are None."""
     words = []
     for name in OPTIONS:
         values = getattr(options, name, None)
         for value in values if isinstance(values, list) else [values]:
             words += [] if value is None else [f"--{name}={value}"]
-    return [*words, *(["--contacts"] if options.contacts else []), *(["--", scene] if scene else [])]
+    return [*words, *(f"--{name.replace('_', '-')}" for name in FLAGS if getattr(options, name, False)), *(["--", scene] if scene else [])]
 
 
 def _exported(forwarder, program, words, path, page):

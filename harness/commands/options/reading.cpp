@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include "harness/commands/options/reading.h"
+
+#include "base/error.h"
+#include "harness/commands/options/external_options.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace tandem {
+
+namespace {
+
+constexpr auto duplicates_help =
+    "tetrahedra with the four vertices of an earlier one: merge (they keep their numbers and take no part), "
+    "keep (they take part) or reject (default: merge)";
+constexpr auto duplicates_choices = "merge|keep|reject";
+constexpr auto weld_help =
+    "vertices at most this far apart count as one for boundary faces, duplicates and setting self; "
+    "coordinates stay (default: no welding)";
+constexpr auto corners_help = "read tetrahedra of higher order by their corners (default: refuse them)";
+constexpr auto only_help = "leave out volume cells that are not tetrahedra (default: refuse them)";
+
+Duplicates duplicates_named(const std::string& name) {
+    constexpr std::array names{"merge", "keep", "reject"};
+    const auto found = std::ranges::find(names, name);
+    if (found == names.end())
+        throw InputError(fmt::format("--duplicates {}: give merge, keep or reject", name));
+    return static_cast<Duplicates>(found - names.begin());
+}
+
+} // namespace
+
+void add_reading_options(CLI::App& app, MeshReading& reading) {
+    app.add_option_function<std::string>(
+           "--duplicates",
+           [&reading](const std::string& text) { reading.duplicates = duplicates_named(text); },
+           duplicates_help)
+        ->option_text(duplicates_choices);
+    app.add_option_function<double>(
+           "--weld",
+           [&reading](double tolerance) {
+               if (!std::isfinite(tolerance) || tolerance < 0)
+                   throw InputError(fmt::format("--weld {}: give a tolerance of 0 or more", tolerance));
+               reading.weld = tolerance;
+           },
+           weld_help)
+        ->option_text("TOLERANCE");
+    app.add_flag("--corners", reading.corners, corners_help);
+    app.add_flag("--only-tetrahedra", reading.only_tetrahedra, only_help);
+}
+
+std::vector<CLI::Option*> add_external_reading_options(CLI::App& app) {
+    return {add_external_option(app, "--duplicates", duplicates_help)->option_text(duplicates_choices),
+            add_external_option(app, "--weld", weld_help)->option_text("TOLERANCE"),
+            add_external_flag(app, "--corners", corners_help),
+            add_external_flag(app, "--only-tetrahedra", only_help)};
+}
+
+} // namespace tandem

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+
+namespace tandem {
+
+/// Handling of duplicates: tetrahedra with the same four vertices as an earlier one, in any order.
+enum class Duplicates {
+    merge, ///< keep their numbers, but take no part in answers, bounds and boundary faces
+    keep,  ///< take part as every other tetrahedron
+    reject ///< are an error
+};
+
+/// How meshes are read and connected. Decided once, before the first frame, in the unit of the mesh.
+struct MeshReading {
+    Duplicates duplicates = Duplicates::merge;
+    /// Vertices at most this far apart, also along chains, are one vertex for boundary faces, duplicates and
+    /// setting self. Coordinates stay. None: only equal vertex numbers are one vertex.
+    std::optional<double> weld{};
+    bool corners = false;         ///< tetrahedra of higher order become those of their corners, not an error
+    bool only_tetrahedra = false; ///< other volume cells are left out, not an error
+
+    bool operator==(const MeshReading&) const = default;
+};
+
+} // namespace tandem
