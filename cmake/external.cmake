@@ -29,6 +29,7 @@ tandem_external(paper commands.paper)
 tandem_external(report commands.report)
 tandem_external(view commands.view)
 tandem_external(export-csv commands.export_csv)
+tandem_external(convert commands.convert)
 tandem_external(figures error_figures tandem-figures)
 tandem_external(tables tables tandem-tables)
 # JavaScript libraries of Debian's packages that draw charts and scenes in report pages. The commands search this folder and

@@ -13,7 +13,7 @@ from program import PROGRAM, SOURCE, Case, tandem
 
 BASH = SOURCE / "scripts/completion/tandem.bash"
 ZSH = SOURCE / "scripts/completion/_tandem"
-COMMANDS = ["accuracy", "algorithms", "check", "compare", "completion", "devices", "export", "paper", "profile", "report", "run", "scenes", "simulate", "view"]
+COMMANDS = ["accuracy", "algorithms", "check", "compare", "completion", "convert", "devices", "export", "paper", "profile", "report", "run", "scenes", "simulate", "view"]
 
 
 def asked(*words):
@@ -100,7 +100,7 @@ class Completion(Case):
         self.assertEqual(asked("simulate", "--dynamics", "method="), ["method=gauss_seidel", "method=jacobi"])
         for command in COMMANDS:
             self.assertLessEqual(set(asked(command, "--")), set(tandem(command, "--help")[1].replace(",", " ").split()) | {"--no-check", "--no-count", "--version"})
-        for option, values in (("--truth", ["none", "pairs", "contacts"]), ("--degenerate", ["flat", "skip", "reject"])):
+        for option, values in (("--truth", ["none", "pairs", "contacts"]), ("--degenerate", ["flat", "skip", "reject"]), ("--duplicates", ["keep", "merge", "reject"])):
             self.assertEqual(asked("run", option, ""), values)
         self.assertEqual(asked("compare", "--format", "m"), ["markdown"])
 

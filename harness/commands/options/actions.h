@@ -22,6 +22,7 @@ Action add_profile(CLI::App& app);
 Action add_compare(CLI::App& app);
 Action add_simulate(CLI::App& app);
 Action add_export(CLI::App& app);
+Action add_convert(CLI::App& app);
 Action add_paper(CLI::App& app);
 Action add_report(CLI::App& app);
 Action add_view(CLI::App& app);

@@ -34,6 +34,7 @@ constexpr Subcommand subcommands[] = {
     {"compare", "which cells changed, by how much, how sure; exit 1 beyond --threshold", add_compare},
     {"simulate", "move a scene with dynamics; record its frames", add_simulate},
     {"export", "frames as files for ParaView and other viewers, records as a table", add_export},
+    {"convert", "a mesh of any format that meshio reads, as .vtu", add_convert},
     {"paper", "every table and figure of the paper beside ours, with verdicts", add_paper},
     {"report", "records, and a scene, as one HTML page with text, tables and charts", add_report},
     {"view", "a scene in three dimensions as an HTML page", add_view},

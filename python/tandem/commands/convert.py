@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: MIT
+"""tandem convert: reads a mesh by meshio, or a .tet file, and writes it as .vtu, which tandem reads. Cells of every kind are kept, and data are not."""
+import contextlib
+import io
+import os
+
+from ..errors import BadUse
+from . import Parser, check_packages, run
+
+
+def _parsed(arguments):
+    parser = Parser(prog="tandem convert", description=__doc__)
+    parser.add_argument("file")
+    parser.add_argument("--output", required=True, metavar="FILE.vtu")
+    return parser.parse_args(arguments)
+
+
+def _words(path):
+    with open(path, encoding="utf-8", errors="replace") as file:
+        return [word for line in file for word in line.split("#")[0].split()]
+
+
+def _tet(path):
+    """Points and tetrahedra of the two formats with the suffix .tet: "tet V T", or "V vertices T tets" with a 4 before each tetrahedron."""
+    words = _words(path)
+    try:
+        counted = words[0] == "tet"
+        points, cells = (int(words[1]), int(words[2])) if counted else (int(words[0]), int(words[2]))
+        start, width = (3, 4) if counted else (4, 5)
+        end = start + 3 * points
+        if len(words) != end + width * cells:
+            raise BadUse(f"{path}: {len(words)} words for {points} vertices and {cells} tetrahedra; export the file again")
+        rows = [words[end + width * i:end + width * (i + 1)][width - 4:] for i in range(cells)]
+        return [[float(word) for word in words[start + 3 * i:start + 3 * i + 3]] for i in range(points)], [[int(word) for word in row] for row in rows]
+    except (IndexError, ValueError):
+        raise BadUse(f"{path}: is no .tet file; it begins with 'tet V T' or 'V vertices T tets'") from None
+
+
+def _by_meshio(path):
+    import meshio
+    errors = io.StringIO()
+    try:
+        with contextlib.redirect_stdout(errors), contextlib.redirect_stderr(errors):
+            return meshio.read(path)
+    except ImportError as problem:
+        raise BadUse(f"{path}: meshio needs {problem.name} for this format; install it with pip") from None
+    except (Exception, SystemExit) as problem:  # meshio ends the program where it cannot read, and has no type of its own for damaged files
+        told = errors.getvalue() or ("" if isinstance(problem, SystemExit) else str(problem))
+        raise BadUse(f"{path}: meshio cannot read it ({' '.join(told.split()) or 'damaged'}); export .msh, .vtk or .vtu") from None
+
+
+def _read(path):
+    import meshio
+    if path.lower().endswith(".tet"):
+        points, tetrahedra = _tet(path)
+        return meshio.Mesh(points, [("tetra", tetrahedra)])
+    given = _by_meshio(path)
+    return meshio.Mesh(given.points, given.cells)
+
+
+def _make(arguments):
+    options = _parsed(arguments)
+    if not options.output.endswith(".vtu"):
+        raise BadUse(f"{options.output}: tandem convert writes .vtu; name a file FILE.vtu")
+    if not os.path.isfile(options.file):
+        raise BadUse(f"{options.file}: there is no such file; check the path")
+    if os.path.exists(options.output) and os.path.samefile(options.file, options.output):
+        raise BadUse(f"{options.output}: is the input; name another file")
+    check_packages("tandem convert", ("numpy", "meshio"))
+    import numpy
+    mesh = _read(options.file)
+    tetrahedra = sum(len(block.data) for block in mesh.cells if block.type.startswith("tetra"))
+    if tetrahedra == 0:
+        raise BadUse(f"{options.file}: no tetrahedra; export the volume, not only the surface")
+    mesh.points = numpy.asarray(mesh.points, dtype=float)
+    try:
+        mesh.write(options.output, file_format="vtu")
+    except OSError as problem:
+        raise BadUse(f"{options.output}: cannot be written ({problem.strerror}); choose another file") from None
+    return f"{options.output}: {len(mesh.points)} vertices and {tetrahedra} tetrahedra of {options.file}\n", 0
+
+
+def main(arguments, program=""):
+    return run(lambda: _make(arguments))
