@@ -103,11 +103,11 @@ std::size_t count_coincident(const Mesh& mesh) {
     std::size_t count = 0;
     for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
         if (!is_used[v]) continue;
-        const auto& here = mesh.vertices[v];
-        if (table.any(here, [&](std::uint32_t u) { return mesh.vertices[u] == here; }))
+        const auto& position = mesh.vertices[v];
+        if (table.any(position, [&](std::uint32_t u) { return mesh.vertices[u] == position; }))
             ++count;
         else
-            table.add(here, v);
+            table.add(position, v);
     }
     return count;
 }

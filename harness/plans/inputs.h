@@ -8,7 +8,7 @@ namespace tandem {
 
 /// Prints what readers found in the meshes of a scene, one line a mesh file on standard error, and returns
 /// the scene.
-Scene told(Scene scene);
+Scene reported(Scene scene);
 
 /// Opens the scene of the options: a kind, a description, or mesh files with poses. Throws InputError.
 Scene open_scene(const RunOptions& options);

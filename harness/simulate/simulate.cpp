@@ -32,7 +32,7 @@ constexpr int warming_replays = 3;
 /// Opens a scene with dynamics and applies the settings of --dynamics.
 Scene open_scene(const SimulateOptions& options) {
     if (options.scene.empty()) throw InputError("no scene; name one, see 'tandem scenes'");
-    auto scene = told(make_scene(options.scene, options.reading));
+    auto scene = reported(make_scene(options.scene, options.reading));
     if (!scene.dynamics)
         throw InputError(fmt::format("scene {} has no dynamics, its motion is scripted; measure it with "
                                      "'tandem run'",

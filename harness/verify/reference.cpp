@@ -76,7 +76,9 @@ void test_all_of_one(const Bounds<Real>& body, Hit hit) {
             if (overlapping(body.tetrahedron(t), body.tetrahedron(u), body.axes, body.published)) hit(t, u);
 }
 
-bool share_vertex(const std::array<std::uint32_t, 4>& p, const std::array<std::uint32_t, 4>& q) {
+/// Whether two tetrahedra of a mesh have a common vertex of its topology.
+bool share_vertex(const Mesh& mesh, std::uint32_t t, std::uint32_t u) {
+    const auto p = joined(mesh, mesh.tetrahedra[t]), q = joined(mesh, mesh.tetrahedra[u]);
     return std::ranges::any_of(p, [&](auto vertex) { return std::ranges::find(q, vertex) != q.end(); });
 }
 
@@ -207,8 +209,7 @@ ReferenceAnswer answer_in(const Scene& scene, const FrameInput& input, const Geo
         if (meets_itself(scene, a, settings.self)) {
             const auto& mesh = scene.meshes[scene.bodies[a].mesh];
             const auto hit = [&](std::uint32_t t, std::uint32_t u) {
-                if (!share_vertex(joined(mesh, mesh.tetrahedra[t]), joined(mesh, mesh.tetrahedra[u])))
-                    found[a].push_back({a, t, a, u});
+                if (!share_vertex(mesh, t, u)) found[a].push_back({a, t, a, u});
             };
             if (method == Method::brute_force)
                 test_all_of_one(bounds[a], hit);

@@ -19,7 +19,7 @@ POINTS_LINES_FACES = ("vertex", "line", "line3", "triangle", "triangle6", "trian
 KINDS = "a tandem.Mesh, a path, (vertices, tetrahedra), or an object with points and cells_dict (meshio, PyVista)"
 
 
-def _told(mesh):
+def _warned(mesh):
     """Warns of what the mesh has beside sound tetrahedra, and returns it."""
     if mesh.findings:
         warnings.warn(f"mesh {mesh.name}: {mesh.findings}", stacklevel=3)
@@ -29,14 +29,14 @@ def _told(mesh):
 def make_mesh(vertices: Any, tetrahedra: Any, name: str = "mesh") -> Mesh:
     """Makes a Mesh of vertices, (n, 3) numbers, and tetrahedra, (m, 4) integers from 0; both are copied. Raises ValueError or TypeError, whose
     one-line message begins with `name`."""
-    return _told(_core.make_mesh(host_array(vertices, f"{name}: vertices", 3), host_array(tetrahedra, f"{name}: tetrahedra", 4, numpy.uint32), name))
+    return _warned(_core.make_mesh(host_array(vertices, f"{name}: vertices", 3), host_array(tetrahedra, f"{name}: tetrahedra", 4, numpy.uint32), name))
 
 
 def read_mesh(path: str | os.PathLike[str]) -> Mesh:
     """Reads a tetrahedral mesh. Content and suffix determine the format: Gmsh .msh 2.2 and 4.1, Medit .mesh, TetGen .node/.ele, legacy .vtk
     and .vtu. Duplicate tetrahedra take no part in answers: a UserWarning tells of them and of coincident vertices. Raises ValueError with
     FILE:LINE."""
-    return _told(_core.read_mesh(os.fspath(path)))
+    return _warned(_core.read_mesh(os.fspath(path)))
 
 
 def mesh_of(mesh: Any, name: str) -> Mesh:
@@ -45,7 +45,7 @@ def mesh_of(mesh: Any, name: str) -> Mesh:
     if isinstance(mesh, Mesh):
         return mesh
     if isinstance(mesh, (bytes, bytearray)):
-        return _told(_core.parse_mesh(bytes(mesh), name))
+        return _warned(_core.parse_mesh(bytes(mesh), name))
     if isinstance(mesh, (str, os.PathLike)):
         return read_mesh(mesh)
     if isinstance(mesh, (tuple, list)) and len(mesh) == 2:

@@ -53,7 +53,7 @@ TEST(Medit, NoFinalNewline) {
 
 TEST(Medit, OtherCells) {
     expect_failure("hexes.mesh", replaced(example, "Required", "Hexahedra 1\n1 2 3 4 5 6 1 2 0\nRequired"),
-                   ":20", "cells of type 'Hexahedra' are not tetrahedra");
+                   ":20", "cells of type 'Hexahedra' are not linear tetrahedra");
     expect_failure("second.mesh", replaced(example, "Tetrahedra", "TetrahedraP2"), ":17",
                    "cells of type 'TetrahedraP2'");
 }

@@ -265,8 +265,9 @@ TEST(Vtu, BadStructure) {
     expect_failure("open.vtu", text.substr(0, text.find("</VTKFile") + 5), ":", "a tag without '>'");
     expect_failure("kind.vtu", replaced(text, "\"UnstructuredGrid\"", "\"PolyData\""), ":3",
                    "'PolyData' is not supported");
-    expect_failure("lz4.vtu", replaced(text, "byte_order", "compressor=\"vtkLZ4DataCompressor\" byte_order"),
-                   ":3", "compressor 'vtkLZ4DataCompressor' is not supported");
+    expect_failure("packed.vtu",
+                   replaced(text, "byte_order", "compressor=\"vtkZstdDataCompressor\" byte_order"), ":3",
+                   "compressor 'vtkZstdDataCompressor' is not supported");
     expect_failure("type.vtu", replaced(text, "\"Float64\"", "\"String\""), ":10", "number type 'String'");
     expect_failure("header.vtu", replaced(text, "UInt64", "UInt16"), ":3", "unknown header_type 'UInt16'");
     expect_failure("lacks.vtu", replaced(text, "\"offsets\"", "\"ends\""), ":5", "Piece lacks");

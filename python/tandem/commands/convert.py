@@ -45,8 +45,8 @@ def _by_meshio(path):
     except ImportError as problem:
         raise BadUse(f"{path}: meshio needs {problem.name} for this format; install it with pip") from None
     except (Exception, SystemExit) as problem:  # meshio ends the program where it cannot read, and has no type of its own for damaged files
-        told = errors.getvalue() or ("" if isinstance(problem, SystemExit) else str(problem))
-        raise BadUse(f"{path}: meshio cannot read it ({' '.join(told.split()) or 'damaged'}); export .msh, .vtk or .vtu") from None
+        message = errors.getvalue() or ("" if isinstance(problem, SystemExit) else str(problem))
+        raise BadUse(f"{path}: meshio cannot read it ({' '.join(message.split()) or 'damaged'}); export .msh, .vtk or .vtu") from None
 
 
 def _read(path):
