@@ -167,8 +167,11 @@ class Reading(unittest.TestCase):
             self.assertEqual(read(begun), [("a", True)])
             self.assertEqual(read(begun, whole), [("b", False)])
             self.assertEqual(read(whole + begun + whole, whole, other), [("b", False), ("c", False)])
-            # without the record that it continues
-            self.assertEqual(read(with_rounds(5, "a", 2), whole), [("a", True), ("b", False)])
+            # measured again without the rounds of the interrupted cell; not by another program, nor if it failed
+            self.assertEqual(read(with_rounds(5, "a", 2), whole), [("b", False)])
+            self.assertEqual(read(whole, with_rounds(5, "a", 2)), [("b", False), ("a", True)])
+            environment = line["environment"] | {"sources": "77"}
+            self.assertEqual(read(with_rounds(5, "a", 2), with_rounds(len(rounds), "b", environment=environment)), [("a", True), ("b", False)])
             gpus = [{**line["devices"][0], "id": f"cuda:{i}"} for i in range(2)]
             self.assertEqual(len(read(with_rounds(9, "s", devices=gpus[:1]), with_rounds(9, "s", 2, devices=gpus[1:]))), 2)
             with self.assertRaises(tandem.RecordError) as caught:

@@ -111,6 +111,14 @@ class Sessions(Files):
         again = record("8", around(2, 12), session="a0")
         self.assertEqual([round(ns) for ns in self.read(*old, again).cells[0].times()], [round(numpy.median(around(1, 10))), round(numpy.median(around(2, 12)))])
 
+    def test_an_interrupted_cell_counts_only_if_it_is_the_last(self):
+        partial = record("8", around(1, 3), session="a0") | {"sampling": {"interrupted": True}}
+        whole = record("8", around(1, 3) + around(2, 9), session="a1")
+        cell, = self.read(partial, whole).cells
+        self.assertEqual((cell.sessions, len(cell.rounds)), (0, 12))
+        self.assertEqual(self.read(whole, partial).cells[0].sessions, 2)
+        self.assertEqual(len(self.read(partial).cells[0].rounds), 3)
+
     def test_a_session_is_disturbed_if_half_of_its_rounds_are(self):
         half, less = (disturbed(record("8", [3e7] * 4 + around(1, 6), session=name), range(count)) for name, count in (("a", 5), ("b", 4)))
         cell, = self.read(half, less).cells

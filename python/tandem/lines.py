@@ -127,6 +127,18 @@ def continues(more, less):
     return len(more) > len(less) > 0 and all(more.get(number) == samples for number, samples in less.items())
 
 
+def is_partial(record):
+    """Whether a signal ended the cell before it had enough rounds."""
+    return (record.get("sampling") or {}).get("interrupted") is True
+
+
+def _measured_again(early, later):
+    """Whether the later of two records of a key measures the interrupted cell of the early one again, by the same program on the same devices."""
+    def program(record):
+        return (record.get("environment") or {}).get("sources"), [device["id"] for device in record["devices"]]
+    return is_partial(early) and later.get("status") != "failed" and program(early) == program(later)
+
+
 def run_of(record):
     """A value that is equal for records of one cell in one run of the program; None if the run is unknown."""
     session = record.get("session")
@@ -135,7 +147,7 @@ def run_of(record):
 
 def merged(paths, verdict=lambda line, location: None):
     """The records of several files, each with its location and its file, and each result once. Calls `verdict` as each() does. Leaves out
-    copies and records that another record of the same key continues. Raises RecordError for files that cannot be read, and for different records of one cell in one run."""
+    copies, records that another record of the same key continues, and records of interrupted cells before a later one of the same sources. Raises RecordError for files that cannot be read, and for different records of one cell in one run."""
     rows = [(record, location, path) for path in paths for record, location in each(path, verdict)]
     by_key = {}
     for number, (record, *_) in enumerate(rows):
@@ -156,6 +168,7 @@ def _superseded(rows):
         except (KeyError, TypeError, AttributeError):
             raise RecordError(f"{location}: a record that lacks fields of its schema; {WHAT_TO_GIVE}") from None
     dropped = {number for number in rounds if any(continues(rounds[other], rounds[number]) for other in rounds)}
+    dropped |= {number for number, record, _ in rows if any(other > number and _measured_again(record, later) for other, later, _ in rows)}
     first = {}
     for number, record, location in rows:
         run = runs[number]

@@ -158,7 +158,7 @@ def _table(rows, whole, words, times):
 
 def read(files):
     """Reads Records from one path or several (.jsonl or .jsonl.xz), in their order, such as the shards of a plan. Each result occurs once:
-    the record of an interrupted cell is left out if another record continues it. Raises RecordError with FILE:LINE, the error and what to
+    the record of an interrupted cell is left out if a later one of the same program has its key. Raises RecordError with FILE:LINE, the error and what to
     do. A last line without an end is left out with a warning."""
     paths = [files] if isinstance(files, (str, os.PathLike)) else list(files)
     if not paths:

@@ -53,6 +53,7 @@ class RecordedCell:
     sessions: int = 0
     all_rounds: int = 0
     disturbed_rounds: int = 0
+    is_partial: bool = False  # a signal ended it before it had enough rounds
 
     def times(self):
         return list(self.rounds.values())
@@ -175,7 +176,8 @@ def _cell(record, line):
         seed=seed if isinstance(seed, int) else None, samples=samples, rounds=rounds, pairs=_answer(record, "digest"),
         contacts=_answer(record, "contact_digest"), commit=_text(environment, "commit"), processor=_text(environment, "processor"),
         dirty=_needed(environment, "dirty", bool), chosen=record.get("chosen") is not None, sources=_text(environment, "sources"),
-        disturbed=disturbed, reason=reason, all_rounds=len(rounds), disturbed_rounds=len(disturbed))
+        disturbed=disturbed, reason=reason, all_rounds=len(rounds), disturbed_rounds=len(disturbed),
+        is_partial=lines.is_partial(record))
 
 
 def recorded_cell(record, path, line):

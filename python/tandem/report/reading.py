@@ -31,8 +31,8 @@ class Records:
 
 
 class _Cells:
-    """ShownCells by number, in the order of their records. With more than `max_cells`, keeps only one per key. Leaves out copies and records
-    that another record of the same key continues."""
+    """ShownCells by number, in the order of their records. With more than `max_cells`, keeps only one per key. Leaves out copies, records
+    that another record of the same key continues, and records of interrupted cells before a later one."""
 
     def __init__(self, max_cells):
         self.max_cells, self.one_per_key = max_cells, False
@@ -43,7 +43,7 @@ class _Cells:
         numbers = self.numbers_by_key.get(cell.recorded.key, [])
         if any(self.cells[number].continues(cell) or self.cells[number].is_copy_of(cell) for number in numbers):
             return
-        interrupted = [number for number in numbers if cell.continues(self.cells[number])]
+        interrupted = [number for number in numbers if cell.replaces(self.cells[number])]
         self._remove(interrupted)
         self.records += 1 - len(interrupted)
         if not self.one_per_key and len(self.cells) == self.max_cells:

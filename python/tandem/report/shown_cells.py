@@ -42,6 +42,11 @@ class ShownCell:
         """Whether this record has all rounds of the other and further ones, because that one was interrupted."""
         return lines.continues(self.samples, other.samples)
 
+    def replaces(self, earlier):
+        """Whether only this one of two records of a key is shown: it continues the earlier one, or measures the interrupted cell again."""
+        own, old = self.recorded, earlier.recorded
+        return self.continues(earlier) or (old.is_partial and own.status != "failed" and own.sources == old.sources)
+
     def is_copy_of(self, other):
         return bool(self.run) and self.run == other.run and self.samples == other.samples and self.recorded.status == other.recorded.status
 
