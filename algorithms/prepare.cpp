@@ -188,6 +188,8 @@ Settings Traversal::fitted(const Settings& settings, const DeviceInfo& info, con
     if (walks_part(settings) && settings[tandem::parameters::broad] != Broad::sphere_boxes)
         throw InputError("settings first_body_pair and most_body_pairs need broad=sphere_boxes, whose pairs "
                          "the reference numbers too; choose it, or leave them out");
+    // Bodies without shared meshes have no slots (bodies/bodies.h).
+    if (is_published(settings)) fitting.set(tandem::parameters::pair_layout(PairLayout::items));
     do_fit(fitting, info, scene);
     if (fitting[tandem::parameters::group_size] == 0)
         fitting.set(tandem::parameters::group_size(std::min<std::int64_t>(128, info.max_group_size)));

@@ -1,28 +1,36 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "base/standard_streams.h"
-
+#include <chrono>
+#include <optional>
 #include <string_view>
-#include <unistd.h>
 
 namespace tandem {
 
-/// One line on standard error that is overwritten in place. Prints nothing when that is no terminal.
+/// One line on standard error that is overwritten in place: "[42 %, 1:05, 1:30 left] text". The percentage is
+/// that of the time. Prints nothing when standard error is no terminal.
 class Progress {
 public:
-    explicit Progress(bool quiet) : on_(!quiet && isatty(STDERR_FILENO) != 0) {}
+    /// The elapsed time counts from here.
+    explicit Progress(bool quiet);
     ~Progress() { clear(); }
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    void show(std::string_view text) const {
-        if (on_) print_message("\r\033[K{}", text);
-    }
-    void clear() const { show(""); }
+    /// `left`: estimated seconds to the end; none when they are not known yet.
+    void show(std::string_view text, std::optional<double> left = {}) const;
+    void clear() const;
+    /// Seconds to the end of work of which this fraction is done since the construction; none for 0.
+    std::optional<double> left(double fraction) const;
 
 private:
+    double elapsed() const;
+
     bool on_;
+    std::chrono::steady_clock::time_point begin_;
 };
+
+/// "[42 %, 1:05, 1:30 left]", or "[1:05]" without the second number.
+std::string progress_text(double elapsed, std::optional<double> left);
 
 } // namespace tandem

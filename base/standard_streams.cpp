@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 namespace tandem {
@@ -51,6 +53,20 @@ void prepare_standard_streams() {
 bool prints_colour() {
     const char* no_color = std::getenv("NO_COLOR");
     return isatty(STDOUT_FILENO) != 0 && (no_color == nullptr || *no_color == '\0');
+}
+
+std::size_t terminal_columns(int descriptor) {
+    winsize size{};
+    return ioctl(descriptor, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
+}
+
+std::size_t output_columns() {
+    constexpr std::size_t least = 40, most = 1000, usual = 100;
+    auto columns = terminal_columns(STDOUT_FILENO);
+    if (const std::string_view given = std::getenv("COLUMNS") != nullptr ? std::getenv("COLUMNS") : "";
+        columns == 0)
+        std::from_chars(given.data(), given.data() + given.size(), columns);
+    return columns == 0 ? usual : std::clamp(columns, least, most);
 }
 
 void put_bytes(std::string_view bytes) {

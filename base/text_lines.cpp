@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "base/text_lines.h"
 
+#include "base/standard_streams.h"
+
 #include <algorithm>
 #include <cstdint>
 #include <fmt/format.h>
@@ -72,14 +74,20 @@ std::vector<std::string> wrap(std::string_view text, std::size_t width) {
 }
 
 std::string paragraph(std::string_view text, std::size_t indent) {
-    const auto first = wrap(text, line_columns).front();
+    const auto columns = output_columns();
+    const auto first = wrap(text, columns).front();
     const auto rest = text.substr(first.size());
     const auto rest_begins = rest.find_first_not_of(' ');
     std::string result = first + "\n";
     if (rest_begins == std::string_view::npos) return result;
-    for (const auto& line : wrap(rest.substr(rest_begins), line_columns - indent))
+    for (const auto& line : wrap(rest.substr(rest_begins), columns - indent))
         result += std::string(indent, ' ') + line + "\n";
     return result;
+}
+
+std::string shortened(std::string_view text, std::size_t width) {
+    if (width_of(text) <= width || width == 0) return std::string(text);
+    return std::string(text.substr(0, bytes_of(text, width - 1))) + "…";
 }
 
 std::string visible(std::string_view text, std::string_view kept) {

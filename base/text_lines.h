@@ -9,8 +9,6 @@
 
 namespace tandem {
 
-constexpr std::size_t line_columns = 100;
-
 /// The number of characters of a text.
 std::size_t width_of(std::string_view text);
 
@@ -18,8 +16,12 @@ std::size_t width_of(std::string_view text);
 /// the word is longer than a line. Returns at least one line.
 std::vector<std::string> wrap(std::string_view text, std::size_t width);
 
-/// wrap() to `line_columns`. Lines after the first begin with `indent` spaces. Each line ends with a newline.
+/// wrap() to lines of standard output. Lines after the first begin with `indent` spaces. Each line ends with
+/// a newline.
 std::string paragraph(std::string_view text, std::size_t indent);
+
+/// The text, or its first `width` - 1 characters and "…" if it has more than `width`.
+std::string shortened(std::string_view text, std::size_t width);
 
 /// The text with control characters as \\n, \\x1b or \\u009b, so that words of a file cannot move a
 /// terminal's cursor, end a line or reverse the order of letters: C0, C1, marks of direction and separators

@@ -23,6 +23,7 @@ PROGRAM = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
 # Tests of label full use every scene, preset and device; otherwise a few, to compile and traverse less.
 LONG = "TANDEM_LONG_FORM" in os.environ
+os.environ.pop("COLUMNS", None)  # tables have their default width
 # Capacities for a million pairs, and queues to match, would take the host most of the time for so few pairs.
 SMALL = {name: 65536 for name in ("pair_capacity", "contact_capacity", "queue_bytes", "seed_capacity", "tile_pair_capacity")}
 

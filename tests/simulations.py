@@ -144,7 +144,7 @@ class Simulations(Case):
         for name in ("converged", "residual", "energy_change_j"):
             self.assertEqual([line[name] for line in resumed], [line[name] for line in steps], name)
         # A single step is reported once; a converging run prints nothing.
-        self.assertEqual(len(self.outputs("simulate", scene, "--device", "host", "--steps", 1, *few)[1]), 1)
+        self.assertEqual(len(self.outputs("simulate", scene, "--device", "host", "--steps", 1, "--record", again, *few)[1]), 1)
         record.unlink()
         self.simulate("block", "--steps", 5, "--record", record)
         steps, runs = self.lines(record)

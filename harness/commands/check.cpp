@@ -2,6 +2,8 @@
 // tandem check: compares every algorithm on every device with the reference, and counts the pairs of the
 // exact truth that it misses.
 #include "harness/commands/commands.h"
+#include "harness/sampling/interrupt.h"
+#include "harness/plans/cell_filter.h"
 #include "harness/plans/inputs.h"
 #include "harness/plans/job.h"
 #include "base/standard_streams.h"
@@ -18,7 +20,7 @@ namespace tandem {
 namespace {
 
 /// Checks every cell and calls `print` for each that finished. Stops when a record cannot be written. Returns
-/// the exit code.
+/// the exit code, also after an interrupt.
 int check_cells(const Job& job, const RunOptions& options, RecordFile& file, const Progress& progress,
                 const std::function<void(const Cell&, const Measurement&)>& print) {
     References references(job.scene, job.range);
@@ -26,14 +28,15 @@ int check_cells(const Job& job, const RunOptions& options, RecordFile& file, con
     Measuring measuring;
     measuring.check.truths = options.truth == TruthAmount::none ? nullptr : &truths;
     measuring.stopping.repeat = 0;
+    measuring.stop = Interrupt::asked;
     int code = 0;
     const auto ended = [&](const CellResult& result) {
         const auto& m = result.measurement;
         code = std::max({code, result.code, misses_against_its_promise(m) ? 1 : 0});
         if (result.measured) print(*result.cell, m);
     };
-    measure_cells(job, job.cells, references, measuring, file, {progress, ended});
-    return code;
+    const bool interrupted = measure_cells(job, job.cells, references, measuring, file, {progress, ended});
+    return interrupted && !file.failed() ? Interrupt::exit_code() : code;
 }
 
 /// One line for each cell: its answer compared with the reference, then with the truth.
@@ -70,6 +73,7 @@ int check_family(const Job& job, const RunOptions& options, RecordFile& file, co
         (m.settings[parameters::rounding] == Rounding::safe ? missed_safe : missed_other) +=
             m.errors->missed();
     });
+    if (Interrupt::asked()) return code;
     const auto& flaws = job.range.flaws();
     put("{:<26} {:>6} {:>9} {:>11} {:>12} {:>13} {:>6} {:>6}{}\n", job.scene.name, job.range.size(),
         errors.touching + errors.missed_touching, errors.overlapping + errors.missed_overlapping, missed_safe,
@@ -110,7 +114,7 @@ int check_hard(const RunOptions& options, const std::vector<Cell>& cells,
             one.degenerate = Degenerate::skip;
         }
         code = std::max(code, check_family(open_job(one, cells), one, file, progress));
-        if (file.failed()) return code;
+        if (file.failed() || Interrupt::asked()) return code;
     }
     put("{}\n", code == 0
                     ? "all agree with the reference; rounding=safe misses no pair that touches or overlaps"
@@ -161,6 +165,11 @@ std::vector<Cell> plan_check(Request request, std::span<const DeviceGroup> devic
     return with_small_queues(std::move(cells), request);
 }
 
+std::vector<Cell> filtered(std::vector<Cell> cells, const RunOptions& options) {
+    keep_matching(cells, options.filter);
+    return cells;
+}
+
 } // namespace
 
 int check_command(const RunOptions& options) {
@@ -170,9 +179,11 @@ int check_command(const RunOptions& options) {
     check_required(backends, options.require);
     const auto devices = open_devices(options, backends, request.devices);
     const auto scenes = expand_hard(options.scene);
+    const Interrupt interrupt(Interrupt::stopping);
     if (scenes.size() > 1)
-        return check_hard(options, with_small_queues(plan(request, devices), request), scenes);
-    const auto job = open_job(options, plan_check(request, devices));
+        return check_hard(options, filtered(with_small_queues(plan(request, devices), request), options),
+                          scenes);
+    const auto job = open_job(options, filtered(plan_check(request, devices), options));
     RecordFile file(options.out);
     print_scene(job.scene, job.range);
     const Progress progress(options.quiet);
@@ -182,7 +193,7 @@ int check_command(const RunOptions& options) {
         print_matrix_row(cell, m);
         broken += misses_against_its_promise(m) ? 1 : 0;
     });
-    if (file.failed()) return code;
+    if (file.failed() || Interrupt::asked()) return code;
     put("{}\n", code == 0 ? "all agree with the reference" : "NOT all agree with the reference");
     if (broken > 0) put("{} cells with safe rounding MISS pairs that touch or overlap\n", broken);
     return code;

@@ -28,11 +28,13 @@ namespace tandem {
 
 namespace {
 
-/// Writes the dumps in a separate replay, because writing files takes longer than running frames.
+/// Writes the dumps in a separate replay, because writing files takes longer than running frames. Throws
+/// Interrupted.
 void dump(const Cell& cell, const Job& job, DumpFile& pairs, DumpFile& contacts) {
     if (job.options.dump_pairs.empty() && job.options.dump_contacts.empty()) return;
     const auto session = prepare_session(cell, job.scene);
     for (std::size_t i = 0; i < job.range.size(); ++i) {
+        if (decided(cell.team, Interrupt::asked())) throw Interrupted();
         const auto state = job.range.state(i, session->settings()[parameters::motion]);
         const auto result = session->run_unchecked(state.input());
         // Collective: all ranks download; only rank 0 writes.
@@ -45,10 +47,11 @@ void dump(const Cell& cell, const Job& job, DumpFile& pairs, DumpFile& contacts)
 }
 
 /// Replays the frames and does nothing else, so that a profiler records only the algorithm. Profiling starts
-/// after a first replay, which compiles kernels and grows buffers.
+/// after a first replay, which compiles kernels and grows buffers. Throws Interrupted.
 int profile(const Job& job, std::size_t times) {
     for (const auto& cell : job.cells) {
-        Replays replays(cell, job.scene, job.range);
+        Replays replays(cell, job.scene, job.range,
+                        [&cell] { return decided(cell.team, Interrupt::asked()); });
         const auto replay = [&] { replays.timed([](std::size_t, const FrameResult&) {}); };
         replay();
         for (auto* device : cell.devices) device->profile(true);
@@ -60,14 +63,18 @@ int profile(const Job& job, std::size_t times) {
     return 0;
 }
 
-/// Chooses the algorithm and settings of each `auto` cell.
+/// Chooses the algorithm and settings of each `auto` cell. Throws Interrupted.
 void choose_cells(Job& job, const RunOptions& options, const Progress& progress) {
     ChoosingOptions choosing;
     choosing.seconds = options.choose_seconds;
     choosing.afresh = options.choose_afresh;
+    choosing.stop = Interrupt::asked;
     for (std::size_t i = 0; i < job.cells.size(); ++i) {
         choosing.progress = [&](std::string_view text) {
-            progress.show(text.empty() ? "" : fmt::format("[{}/{}] {}", i + 1, job.cells.size(), text));
+            if (text.empty())
+                progress.clear();
+            else
+                progress.show(fmt::format("{}/{} {}", i + 1, job.cells.size(), text));
         };
         choose(job.cells[i], job.scene, job.range, choosing);
     }
@@ -98,6 +105,7 @@ private:
     void check_one_group() const;
     std::unique_ptr<Job> open(const CellGroup& group, const Unfit& unfit) const;
     void open_files();
+    int work_on(Job& job);
     int measure(Job& job);
     void conclude(const Job& job, const std::map<const Cell*, CellResult>& results);
     int end(int code);
@@ -118,6 +126,7 @@ private:
     FinishedCells finished_;
     Unfinished unfinished_;
     Progress progress_;
+    std::size_t later_cells_ = 0; ///< of the groups after that which is measured
     std::size_t listed_ = 0, unknown_ = 0, measured_ = 0, left_out_ = 0, verdicts_ = 0;
     double seconds_ = 0;
     bool interrupted_ = false;
@@ -136,6 +145,7 @@ Run::Run(const RunOptions& options, RankTeam* team)
             return choose_devices(backends_, std::array{team_->own_of_each(asked[0], backends_)});
         };
         all_ = make_groups(plan, choose, options_.shard);
+        keep_matching(all_, options_.filter, options_.shard);
         print_left_out(all_);
         if (options_.shard.of > 1)
             put("shard {}/{}: {} of {} groups\n", options_.shard.index, options_.shard.of, all_.groups.size(),
@@ -192,14 +202,16 @@ void Run::leave_out_finished(Job& job) {
     });
 }
 
-/// Lists the cells and estimates their time: the earlier time where known, else --seconds.
+/// Lists the cells with the keys of their records, and estimates their time: the earlier time where known,
+/// else --seconds.
 void Run::list(const Job& job) {
     for (const auto& cell : job.cells) {
         const auto known = finished_.seconds(cell, job.scene, job.range);
         if (!known && options_.repeat) ++unknown_;
         seconds_ += known ? *known : (options_.repeat ? 0 : options_.seconds);
         put("{:>5}  {}\n       {}\n", ++listed_, describe(cell),
-            key_of(cell, cell.settings, job.scene, job.range));
+            cell.candidates.empty() ? key_of(cell, session_settings(cell, job.scene), job.scene, job.range)
+                                    : "its key is that of the choice");
     }
 }
 
@@ -217,9 +229,11 @@ int Run::measure(Job& job) {
         code = std::max(code, result.code);
         results.emplace(result.cell, result);
     };
-    interrupted_ = measure_cells(job, job.cells, references, measuring, *file_, {progress_, ended});
+    interrupted_ =
+        measure_cells(job, job.cells, references, measuring, *file_, {progress_, ended, later_cells_});
     measured_ += results.size();
     conclude(job, results);
+    if (interrupted_) return code;
     // Dumps come last, because a dump that cannot be written ends the run.
     for (const auto& cell : job.cells)
         if (const auto found = results.find(&cell); found != results.end() && found->second.measured) {
@@ -239,7 +253,7 @@ void Run::conclude(const Job& job, const std::map<const Cell*, CellResult>& resu
             in_order.push_back(&found->second);
     const auto rows = rows_of(job, in_order);
     const auto verdicts = verdicts_of(rows);
-    print_results(rows, verdicts, in_order);
+    print_results(rows, verdicts, job, in_order);
     if (interrupted_ || file_->failed() || !is_first(team_)) return;
     for (const auto& verdict : verdicts)
         verdicts_ += file_->append_or_report(verdict_record(verdict, rows, job.scene, job.range)) ? 1 : 0;
@@ -247,6 +261,7 @@ void Run::conclude(const Job& job, const std::map<const Cell*, CellResult>& resu
 
 /// Prints the last messages and returns the exit code.
 int Run::end(int code) {
+    if (options_.profile > 0) return interrupted_ ? Interrupt::exit_code() : code;
     if (left_out_ > 0) put("{} cells are already in {}\n", left_out_, options_.out);
     if (!options_.out.empty())
         put("{} records appended to {}\n", file_->appended() - verdicts_, options_.out);
@@ -257,7 +272,7 @@ int Run::end(int code) {
                   can_resume
                       ? fmt::format("; to continue: {}{}", command_line(), options_.resume ? "" : " --resume")
                       : "");
-    return 3;
+    return Interrupt::exit_code();
 }
 
 std::unique_ptr<Job> Run::open(const CellGroup& group, const Unfit& unfit) const {
@@ -273,25 +288,37 @@ std::unique_ptr<Job> Run::open(const CellGroup& group, const Unfit& unfit) const
     return job;
 }
 
+/// Measures the cells of a group, or replays them for a profiler. Returns the exit code.
+int Run::work_on(Job& job) {
+    try {
+        choose_cells(job, options_, progress_);
+        return options_.profile > 0 ? profile(job, options_.profile) : measure(job);
+    } catch (const Interrupted&) {
+        interrupted_ = true;
+        return 0;
+    }
+}
+
 int Run::go() {
     if (options_.dry_run) return list_all();
     if (all_.groups.empty()) return 0;
     // Open all groups first, so that a mistake in the last scene is found before the first is measured.
     if (all_.groups.size() > 1)
         for (const auto& group : all_.groups) open(group, leave_out);
-    const Interrupt interrupt;
+    const Interrupt interrupt(is_first(team_) ? Interrupt::stopping : std::string_view());
     int code = 0;
+    for (const auto& group : all_.groups) later_cells_ += group.cells.size();
     for (const auto& group : all_.groups) {
+        later_cells_ -= group.cells.size();
         const auto job = open(group, print_skipped);
         open_files();
         leave_out_finished(*job);
         if (job->cells.empty()) continue;
         print_scene(job->scene, job->range);
-        choose_cells(*job, options_, progress_);
-        code = std::max(code, options_.profile > 0 ? profile(*job, options_.profile) : measure(*job));
+        code = std::max(code, work_on(*job));
         if (must_stop()) break;
     }
-    return decided(team_, options_.profile > 0 ? code : end(code));
+    return decided(team_, end(code));
 }
 
 /// --dry-run. A scene that cannot be opened yet, such as a missing recording, does not hide the other groups.

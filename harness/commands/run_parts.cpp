@@ -37,10 +37,16 @@ std::vector<Row> rows_of(const Job& job, std::span<const CellResult* const> resu
     return rows;
 }
 
-void print_results(std::span<const Row> rows, const std::vector<Verdict>& verdicts,
+void print_results(std::span<const Row> rows, const std::vector<Verdict>& verdicts, const Job& job,
                    std::span<const CellResult* const> results) {
     if (rows.empty()) return;
-    put_text("\n" + result_tables(rows, verdicts, prints_colour()) + "\n");
+    const bool is_text = job.options.format == TableFormat::text;
+    put_text("
+"
+             + result_tables(rows, verdicts, job.scene,
+                             {job.options.format, is_text && prints_colour(), job.options.columns})
+             + "
+");
     for (const auto* result : results) {
         if (!result->measured) continue;
         const auto doubt = doubts(*result);

@@ -20,7 +20,7 @@ std::vector<Row> rows_of(const Job& job, std::span<const CellResult* const> resu
 
 /// Prints the tables of the rows with their verdicts, and for each measured result whether its answer is
 /// right.
-void print_results(std::span<const Row> rows, const std::vector<Verdict>& verdicts,
+void print_results(std::span<const Row> rows, const std::vector<Verdict>& verdicts, const Job& job,
                    std::span<const CellResult* const> results);
 
 } // namespace tandem

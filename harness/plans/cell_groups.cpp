@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "harness/plans/cell_groups.h"
 
+#include "harness/plans/cell_filter.h"
+
 #include <algorithm>
 #include <fmt/format.h>
+#include <optional>
 
 namespace tandem {
 
@@ -132,6 +135,20 @@ CellGroups make_groups(const PlanFile& plan, const ChooseDevices& choose, Shard 
         if (!all.groups[number].cells.empty()) own.push_back(std::move(all.groups[number]));
     all.groups = std::move(own);
     return all;
+}
+
+void keep_matching(CellGroups& all, const std::string& expression, Shard shard) {
+    const CellFilter filter(expression);
+    std::size_t count = 0;
+    std::optional<Cell> example;
+    for (auto& group : all.groups) {
+        count += group.cells.size();
+        if (!example && !group.cells.empty()) example = group.cells.front();
+        filter.apply(group.cells);
+    }
+    if (expression.empty()) return;
+    std::erase_if(all.groups, [](const CellGroup& group) { return group.cells.empty(); });
+    if (all.groups.empty() && example && shard.of == 1) filter.refuse_none(count, *example);
 }
 
 } // namespace tandem

@@ -37,4 +37,8 @@ using ChooseDevices = std::function<std::vector<DeviceGroup>(const std::vector<s
 /// plan(), and for an exclusion that matches no cell.
 CellGroups make_groups(const PlanFile& plan, const ChooseDevices& choose, Shard shard = {});
 
+/// Removes cells whose names do not match --filter (cell_filter.h), and groups without cells. Throws
+/// InputError when no cell is left, unless other shards may have some.
+void keep_matching(CellGroups& all, const std::string& expression, Shard shard);
+
 } // namespace tandem

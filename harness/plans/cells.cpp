@@ -223,6 +223,7 @@ SettingTexts changes(const Cell& cell) {
 }
 
 std::string describe(const Cell& cell) {
+    if (!cell.candidates.empty()) return fmt::format("{} on {}", automatic, name_of(cell.devices));
     std::vector<std::string> changed;
     for (const auto& [name, value] : changes(cell)) changed.push_back(fmt::format("{}={}", name, value));
     return fmt::format("{} {}{}{} on {}", cell.algorithm->name(), cell.preset, changed.empty() ? "" : " ",

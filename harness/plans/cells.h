@@ -66,7 +66,8 @@ Cell make_cell(const Traversal& traversal, const Preset& preset, const SettingTe
 /// The settings that differ from the preset. Equal cells have equal changes, however the user named them.
 SettingTexts changes(const Cell& cell);
 
-/// "chunked resident on opencl:0", with the settings that differ from the preset after "resident".
+/// The name of a cell in tables, messages and --filter: "chunked grouped on opencl:0", with the settings that
+/// differ from the preset after "grouped"; "auto on opencl:0" before auto has chosen.
 std::string describe(const Cell& cell);
 
 } // namespace tandem

@@ -135,8 +135,9 @@ bool measure_cells(const Job& job, std::span<const Cell> cells, References& refe
         group.push_back(samplers.emplace_back(make_sampler(cell, job, references, sink)).get());
     RoundsListener rounds;
     std::size_t done = 0;
-    rounds.progress = [&](std::string_view text) {
-        listener.progress.show(fmt::format("[{}/{}] {}", done, cells.size(), text));
+    rounds.later_cells = listener.later_cells;
+    rounds.progress = [&](std::string_view text, std::optional<double> left) {
+        listener.progress.show(fmt::format("{}/{} {}", done, cells.size(), text), left);
     };
     rounds.stop = [&] { return sink.failed() || measuring.stop(); };
     rounds.kept = [&](const CellSampler& sampler, bool is_first) {
@@ -147,9 +148,7 @@ bool measure_cells(const Job& job, std::span<const Cell> cells, References& refe
         listener.progress.clear();
         listener.ended(end_cell(outcome, sampling, job, sink));
     };
-    auto check = measuring.check;
-    check.progress = rounds.progress;
-    return sample_group(group, check, measuring.stopping, measuring.seed, rounds);
+    return sample_group(group, measuring.check, measuring.stopping, measuring.seed, rounds);
 }
 
 std::filesystem::path checks_folder(const RunOptions& options) {

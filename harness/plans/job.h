@@ -50,6 +50,7 @@ struct CellResult {
 struct CellsListener {
     const Progress& progress;
     std::function<void(const CellResult&)> ended;
+    std::size_t later_cells = 0; ///< cells that are measured afterwards, for the estimated time left
 };
 
 /// Measures the cells as one group. Appends a record for each cell as it ends, also when its device failed,

@@ -3,6 +3,7 @@
 
 #include "harness/plans/plan_file.h"
 #include "harness/plans/shard.h"
+#include "harness/record/table/columns.h"
 #include "harness/verify/accuracy/truths.h"
 #include "harness/verify/flaws.h"
 
@@ -49,6 +50,9 @@ struct RunOptions {
     Degenerate degenerate = Degenerate::flat; ///< how flawed tetrahedra are handled
     std::optional<std::size_t> threads;       ///< threads of device host, as setting threads
     std::size_t memory = 0;                   ///< memory limit of each device in bytes; 0: none
+    std::string filter;                       ///< only cells whose names match; empty: all (cell_filter.h)
+    TableFormat format = TableFormat::text;   ///< of printed tables
+    std::vector<std::string> columns;         ///< columns of throughput in printed tables (throughput.h)
     bool quiet = false;
 };
 

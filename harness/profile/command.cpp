@@ -2,6 +2,7 @@
 // `tandem profile`.
 #include "harness/profile/ceilings.h"
 #include "harness/commands/commands.h"
+#include "harness/plans/cell_filter.h"
 #include "harness/plans/inputs.h"
 #include "harness/sampling/interrupt.h"
 #include "harness/plans/job.h"
@@ -54,6 +55,7 @@ public:
     int go();
 
 private:
+    void refuse_unpreparable() const;
     void find_ceilings();
     void end(const Outcome& outcome, const Sampling& sampling);
     void print(const Cell& cell, const Measurement& m, const profile::Profile& profile) const;
@@ -78,11 +80,25 @@ Profiling::Profiling(const ProfileOptions& options)
     check_required(backends_, run_.require);
     auto cells = plan(request, open_devices(run_, backends_, request.devices));
     drop_repeated(cells);
+    keep_matching(cells, run_.filter);
     for (const auto& cell : cells)
         if (cell.devices.size() > 1)
             throw InputError(
                 fmt::format("{}: a profile needs one device; name devices separately, D,E", describe(cell)));
     job_.emplace(open_scene(run_), run_, std::move(cells));
+}
+
+/// Throws the error of the first cell when no cell can be prepared, as with a capacity that exceeds the
+/// memory: measuring ceilings takes a minute on a processor.
+void Profiling::refuse_unpreparable() const {
+    std::optional<DeviceError> first;
+    for (const auto& cell : job_->cells) try {
+            prepare_session(cell, job_->scene);
+            return;
+        } catch (const DeviceError& error) {
+            if (!first) first = error;
+        }
+    if (first) throw DeviceError(*first);
 }
 
 /// Called before cells are measured, so that a file without ceilings is reported early.
@@ -143,25 +159,29 @@ int Profiling::go() {
     file_.emplace(run_.out);
     trace_.emplace(run_.trace);
     print_scene(job_->scene, job_->range);
+    refuse_unpreparable();
     find_ceilings();
-    const Interrupt interrupt;
+    const Interrupt interrupt(Interrupt::stopping);
     References references(job_->scene, job_->range, checks_folder(run_));
     std::deque<LocalSampler> samplers;
     std::vector<CellSampler*> group;
     for (const auto& cell : job_->cells)
         group.push_back(&samplers.emplace_back(cell, job_->scene, job_->range, references));
     RoundsListener listener;
-    listener.progress = [&](std::string_view text) { progress_.show(text); };
+    listener.progress = [&](std::string_view text, std::optional<double> left) {
+        progress_.show(text, left);
+    };
     listener.stop = [&] { return file_->failed() || Interrupt::asked(); };
     listener.finished = [&](const Outcome& outcome, const Sampling& sampling) { end(outcome, sampling); };
-    CheckOptions check{run_.check, true, nullptr};
-    check.progress = listener.progress;
+    const CheckOptions check{run_.check, true, nullptr};
     const bool interrupted = sample_group(group, check, {run_.repeat, run_.noise, run_.seconds},
                                           run_.seed ? *run_.seed : std::random_device{}(), listener);
-    if (traced_ != nullptr && *trace_ && !file_->failed()) trace_->write(trace_frame(*traced_, *job_));
-    if (traced_ != nullptr) put_text("\n" + profile::profile_legend());
+    if (traced_ != nullptr && *trace_ && !file_->failed() && !interrupted)
+        trace_->write(trace_frame(*traced_, *job_));
+    if (traced_ != nullptr) put_text("
+" + profile::profile_legend());
     if (!run_.out.empty()) put("{} records appended to {}\n", file_->appended(), run_.out);
-    return interrupted ? 3 : code_;
+    return interrupted ? Interrupt::exit_code() : code_;
 }
 
 } // namespace

@@ -1,9 +1,38 @@
 // SPDX-License-Identifier: MIT
 #include "harness/sampling/cell_sampler.h"
 
+#include "harness/sampling/interrupt.h"
+
 #include <algorithm>
 
 namespace tandem {
+
+void CellSampler::check(const CheckOptions& options) {
+    try {
+        do_check(options);
+    } catch (const Interrupted&) {
+        const auto rounds = state_.rounds;
+        state_ = {};
+        state_.rounds = rounds;
+        state_.measurement.settings = cell_.settings;
+        throw;
+    }
+}
+
+void CellSampler::round(std::size_t samples) {
+    try {
+        do_round(samples);
+    } catch (const Interrupted&) {
+        drop_round();
+        throw;
+    }
+}
+
+/// Removes the samples of a round that did not end. They have no breakdown, and no condition after them.
+void CellSampler::drop_round() {
+    std::erase_if(state_.measurement.samples,
+                  [&](const TimedReplay& sample) { return sample.round >= state_.rounds; });
+}
 
 std::size_t CellSampler::samples_a_round() const {
     if (state_.replay_ns <= 0) return 1;

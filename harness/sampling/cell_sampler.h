@@ -14,13 +14,14 @@ struct CheckOptions {
     bool check = true;        ///< compare with the reference
     bool count_work = true;   ///< run a replay with the counting kernels
     Truths* truths = nullptr; ///< for the same scene and frames; null: no comparison with the truth
-    std::function<void(std::string_view)> progress = [](std::string_view) {};
+    /// Called with what runs, and the fraction of the check that is done.
+    std::function<void(std::string_view, double)> progress = [](std::string_view, double) {};
 };
 
 /// Measures one cell: a check of every answer, then rounds. A round prepares a new session, so that effects
 /// of memory allocation are part of the noise. It warms up until replays stop getting faster, takes samples,
 /// each compared with the checked answers, and ends with one instrumented replay. Every function may throw
-/// DeviceError; earlier measurements stay valid.
+/// DeviceError, and Interrupted, which drops the check or the round; earlier measurements stay valid.
 class CellSampler {
 public:
     /// Continues from `state`. The cell must outlive this object.
@@ -30,10 +31,13 @@ public:
     }
     virtual ~CellSampler() = default;
 
+    /// Checks and rounds end with Interrupted between two frames where `stop` returns true. For a cell of
+    /// several ranks it is collective.
+    void stop_when(std::function<bool()> stop) { stop_ = std::move(stop); }
     /// The first session: compares every answer with the reference and the truth.
-    void check(const CheckOptions& options) { do_check(options); }
+    void check(const CheckOptions& options);
     /// A round with `samples` samples, which may be 0.
-    void round(std::size_t samples) { do_round(samples); }
+    void round(std::size_t samples);
     /// Counts work once, in a separate session with the counting kernels.
     void count_work() {
         if (!state_.counted) do_count_work();
@@ -62,8 +66,11 @@ public:
 protected:
     const Cell& cell_;
     CellState state_;
+    std::function<bool()> stop_ = [] { return false; };
 
 private:
+    void drop_round();
+
     virtual void do_check(const CheckOptions& options) = 0;
     virtual void do_round(std::size_t samples) = 0;
     virtual void do_count_work() = 0;

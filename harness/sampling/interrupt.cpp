@@ -2,23 +2,44 @@
 #include "harness/sampling/interrupt.h"
 
 #include <array>
+#include <cerrno>
 #include <csignal>
 #include <ctime>
+#include <unistd.h>
 
 namespace tandem {
 
 namespace {
 
-volatile std::sig_atomic_t signalled = 0;
+volatile std::sig_atomic_t signalled = 0; ///< the number of the first signal; 0: none
+std::string_view acknowledgement;
+constexpr std::string_view erase_line = "\r\033[K"; ///< removes a progress line
+bool erases_line = false;
 constexpr std::array signals{SIGINT, SIGTERM, SIGHUP};
 constexpr std::size_t sigterm_index = 1; ///< in `signals`
 std::array<struct sigaction, signals.size()> actions_before{};
 timespec first_sigterm{};
 
-void request_end(int) { signalled = 1; }
+/// Only calls that are safe in a signal handler.
+void write_error(std::string_view text) {
+    while (!text.empty()) {
+        const auto written = write(STDERR_FILENO, text.data(), text.size());
+        if (written <= 0) return;
+        text.remove_prefix(static_cast<std::size_t>(written));
+    }
+}
+
+void request_end(int number) {
+    if (signalled != 0) return;
+    signalled = number;
+    const int error = errno;
+    if (erases_line && !acknowledgement.empty()) write_error(erase_line);
+    write_error(acknowledgement);
+    errno = error;
+}
 
 /// At a time limit Slurm sends SIGTERM twice within milliseconds; both count as one.
-void handle_sigterm(int) {
+void handle_sigterm(int number) {
     timespec now{};
     clock_gettime(CLOCK_MONOTONIC, &now);
     if (first_sigterm.tv_sec != 0 && now.tv_sec > first_sigterm.tv_sec + 1) {
@@ -26,13 +47,15 @@ void handle_sigterm(int) {
         raise(SIGTERM);
     }
     if (first_sigterm.tv_sec == 0) first_sigterm = now;
-    signalled = 1;
+    request_end(number);
 }
 
 } // namespace
 
-Interrupt::Interrupt() {
+Interrupt::Interrupt(std::string_view message) {
     signalled = 0;
+    acknowledgement = message;
+    erases_line = isatty(STDERR_FILENO) != 0;
     first_sigterm = {};
     struct sigaction action {};
     for (std::size_t i = 0; i < signals.size(); ++i) {
@@ -51,5 +74,7 @@ Interrupt::~Interrupt() {
 }
 
 bool Interrupt::asked() { return signalled != 0; }
+
+int Interrupt::exit_code() { return 128 + signalled; }
 
 } // namespace tandem

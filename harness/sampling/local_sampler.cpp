@@ -37,7 +37,7 @@ void LocalSampler::begin_session() {
     MemoryReserve::refill();
     // Drops the facts of earlier cells' kernels, so that later ones belong to this cell.
     for (auto* device : cell_.devices) device->take_kernels();
-    replays_.emplace(cell_, scene_, range_);
+    replays_.emplace(cell_, scene_, range_, stop_);
     state_.prepare_ns = replays_->prepare_ns();
     state_.replay_ns = -1;
 }
@@ -133,7 +133,8 @@ void LocalSampler::add_counts(const FrameResult& result) {
 /// Checks one answer of the checking replay.
 void LocalSampler::check_answer(std::size_t index, const FrameResult& result, const CheckOptions& options) {
     const auto frame = fmt::format("frame {} of {}", index + 1, range_.size());
-    options.progress(fmt::format("{}: checking {}", name_, frame));
+    const auto frames = static_cast<double>(range_.size()), done = static_cast<double>(index);
+    options.progress(fmt::format("{}: checking {}", name_, frame), done / frames);
     // output=count has no digest: the count replaces it, and a correct count implies the expected digest.
     const bool counted = out_.settings[parameters::output] == Output::count;
     auto digest = counted ? Digest{result.count, 0, 0} : result.digest();
@@ -148,8 +149,11 @@ void LocalSampler::check_answer(std::size_t index, const FrameResult& result, co
     if (options.truths != nullptr && result.has_pairs() && has_truth(*options.truths))
         add_errors(*options.truths, index, result, digest, contacts,
                    [&](double fraction, std::uint64_t decided) {
-                       options.progress(fmt::format("truth of {}: {:.0f} %, {} pairs decided", frame,
-                                                    fraction * 100, decided));
+                       // Only rank 0 computes the truth, and the other ranks wait for it.
+                       if (cell_.team == nullptr && stop_()) throw Interrupted();
+                       options.progress(fmt::format("{}: truth of {}: {:.0f} %, {} pairs decided", name_,
+                                                    frame, fraction * 100, decided),
+                                        (done + fraction) / frames);
                    });
     out_.agreement.digest += digest;
     out_.agreement.contact_digest += contacts;
@@ -160,7 +164,7 @@ void LocalSampler::check_answer(std::size_t index, const FrameResult& result, co
 /// Also compiles kernels, which some devices do at the first launch, and grows buffers. Later samples are
 /// compared with the digests of this replay.
 void LocalSampler::do_check(const CheckOptions& options) {
-    options.progress(fmt::format("{}: preparing", name_));
+    options.progress(fmt::format("{}: preparing", name_), 0);
     begin_session();
     out_.prepare_ns = state_.prepare_ns;
     out_.settings = replays_->settings();
@@ -207,9 +211,9 @@ void LocalSampler::warm_up() {
 void LocalSampler::sample() {
     const auto before = replays_->submissions();
     std::uint64_t checking = 0;
-    out_.shared.clear();
+    std::vector<std::vector<DeviceWork>> shared;
     auto replay = replays_->timed([&](std::size_t index, const FrameResult& result) {
-        if (!result.shared.empty()) out_.shared.push_back(result.shared);
+        if (!result.shared.empty()) shared.push_back(result.shared);
         const auto begin = replays_->submissions();
         if (out_.settings[parameters::output] != Output::count && result.digest() != state_.digests[index])
             ++out_.agreement.extra;
@@ -217,6 +221,7 @@ void LocalSampler::sample() {
         checking += replays_->submissions() - begin;
     });
     out_.submissions = replays_->submissions() - before - checking;
+    out_.shared = std::move(shared);
     replay.round = state_.rounds;
     state_.replay_ns = replay.total_ns();
     out_.samples.push_back(std::move(replay));

@@ -62,8 +62,8 @@ std::vector<StageSamples> stages_of(RankTeam* team, const std::vector<Trace>& tr
 
 } // namespace
 
-Replays::Replays(const Cell& cell, const Scene& scene, const FrameRange& range)
-    : cell_(cell), range_(range), name_(describe(cell)) {
+Replays::Replays(const Cell& cell, const Scene& scene, const FrameRange& range, std::function<bool()> stop)
+    : cell_(cell), range_(range), stop_(std::move(stop)), name_(describe(cell)) {
     frame_names_.resize(range.size());
     if (ranges::available())
         for (std::size_t i = 0; i < frame_names_.size(); ++i)
@@ -83,6 +83,7 @@ void Replays::wait() {
 
 /// Returns the frame once all ranks have it and all devices are idle.
 FrameState Replays::next_frame(std::size_t index) {
+    if (stop_()) throw Interrupted();
     FrameState frame;
     together(cell_.team, [&] {
         frame = range_.state(index, settings()[parameters::motion]);

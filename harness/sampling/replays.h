@@ -4,7 +4,10 @@
 #include "backends/ranges.h"
 #include "harness/plans/frames.h"
 #include "harness/sampling/ranks/rank_team.h"
+#include "harness/sampling/interrupt.h"
 #include "harness/sampling/measurement.h"
+
+#include <functional>
 
 namespace tandem {
 
@@ -12,8 +15,12 @@ namespace tandem {
 /// ranks every function is collective, and so are the functions of results that `visit` calls.
 class Replays {
 public:
-    /// Prepares the session and waits for the end. All arguments must outlive this object.
-    Replays(const Cell& cell, const Scene& scene, const FrameRange& range);
+    /// Prepares the session and waits for the end. The first three arguments must outlive this object.
+    /// `stop` is called before each frame: where it returns true, replays throw Interrupted, and the session
+    /// is not used any more. For a cell of several ranks it is collective.
+    Replays(
+        const Cell& cell, const Scene& scene, const FrameRange& range,
+        std::function<bool()> stop = [] { return false; });
 
     /// Duration of the upload of static data and of new compilations.
     std::int64_t prepare_ns() const { return prepare_ns_; }
@@ -52,11 +59,13 @@ public:
     std::uint64_t submissions() const;
 
 private:
+    /// Throws Interrupted.
     FrameState next_frame(std::size_t index);
     void wait();
 
     const Cell& cell_;
     const FrameRange& range_;
+    std::function<bool()> stop_;
     std::string name_;                     ///< of the cell, for profilers
     std::vector<std::string> frame_names_; ///< by frame; empty texts without a profiler
     std::unique_ptr<Session> session_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/sampling/rounds.h"
 
+#include "harness/sampling/interrupt.h"
 #include "harness/sampling/ranks/rank_team.h"
 #include "harness/sampling/statistics.h"
 
@@ -19,10 +20,17 @@ public:
     Group(std::span<CellSampler* const> cells, const CheckOptions& check, const StoppingCriterion& criterion,
           std::uint64_t seed, const RoundsListener& listener)
         : check_(check), listener_(listener), random_(seed) {
+        check_.progress = [this](std::string_view text, double fraction) {
+            running_->check = {static_cast<double>(since(began_)) * 1e-9, fraction};
+            show(text);
+        };
         sampling_.criterion = criterion;
         sampling_.seed = seed;
         sampling_.cells = cells.size();
-        for (auto* cell : cells) outcomes_.push_back({cell, {}, false, 0});
+        for (auto* cell : cells) {
+            outcomes_.emplace_back().sampler = cell;
+            cell->stop_when([this] { return stops(); });
+        }
     }
 
     bool run();
@@ -30,8 +38,8 @@ public:
 private:
     RankTeam* team() const { return outcomes_.empty() ? nullptr : outcomes_.front().sampler->cell().team; }
     bool stops() const { return decided(team(), listener_.stop()); }
-    /// Runs one round of a cell. Returns false when the cell is finished: it has failed, or it meets the
-    /// criterion.
+    /// Runs one round of a cell. Returns false when the cell needs no further one: it has failed, it meets
+    /// the criterion, or it was interrupted before its first round ended.
     template<class Work>
     bool run_round(Outcome& outcome, bool is_first, const Work& work);
     bool begin(Outcome& outcome);
@@ -39,13 +47,46 @@ private:
     bool meets_criterion(Outcome& outcome) const;
     std::size_t next_samples(const CellSampler& cell) const;
     std::string name(const Outcome& outcome) const;
+    /// Reports what runs, with the estimated time left.
+    void show(std::string_view text) const;
+    CellWork work_of(const Outcome& outcome) const;
 
-    const CheckOptions& check_;
+    CheckOptions check_;
     const RoundsListener& listener_;
     std::mt19937_64 random_;
     Sampling sampling_;
     std::vector<Outcome> outcomes_;
+    Outcome* running_ = nullptr; ///< the cell whose check runs
+    std::chrono::steady_clock::time_point began_;
 };
+
+/// The rounds of a cell end with its samples, or else with its time, but not before the least number.
+CellWork Group::work_of(const Outcome& outcome) const {
+    const auto& state = outcome.sampler->state();
+    const auto& criterion = sampling_.criterion;
+    const auto samples = static_cast<double>(state.measurement.samples.size());
+    CellWork work{outcome.check, {static_cast<double>(state.spent_ns) * 1e-9, 1}};
+    if (outcome.ended) {
+        work.check.fraction = 1;
+        return work;
+    }
+    if (criterion.repeat)
+        work.rounds.fraction = *criterion.repeat == 0 ? 1 : samples / static_cast<double>(*criterion.repeat);
+    else
+        work.rounds.fraction = std::min(work.rounds.seconds / criterion.seconds,
+                                        static_cast<double>(state.measurement.round_count())
+                                            / static_cast<double>(StoppingCriterion::least));
+    work.rounds.fraction = std::min(work.rounds.fraction, 1.0);
+    return work;
+}
+
+void Group::show(std::string_view text) const {
+    std::vector<CellWork> work;
+    for (const auto& outcome : outcomes_) work.push_back(work_of(outcome));
+    const auto& criterion = sampling_.criterion;
+    const auto usual = criterion.repeat ? std::nullopt : std::optional(criterion.seconds);
+    listener_.progress(text, seconds_left(work, listener_.later_cells, usual));
+}
 
 std::size_t Group::next_samples(const CellSampler& cell) const {
     const auto& repeat = sampling_.criterion.repeat;
@@ -79,6 +120,11 @@ bool Group::run_round(Outcome& outcome, bool is_first, const Work& work) {
             listener_.kept(*outcome.sampler, is_first);
             return true;
         }
+    } catch (const Interrupted&) {
+        outcome.sampler->release();
+        const bool has_round = !outcome.sampler->measurement().breakdowns.empty();
+        if (!has_round && outcome.sampler->state().is_checked()) listener_.kept(*outcome.sampler, true);
+        return has_round;
     } catch (const DeviceError& error) {
         // An error of a single rank ends the job, because the other ranks wait for that rank.
         if (team() != nullptr && dynamic_cast<const OfAllRanks*>(&error) == nullptr) throw;
@@ -88,29 +134,35 @@ bool Group::run_round(Outcome& outcome, bool is_first, const Work& work) {
         outcome.failure = "out of host memory; use fewer bodies or frames";
     }
     outcome.sampler->release();
+    outcome.ended = true;
     listener_.finished(outcome, sampling_);
     return false;
 }
 
 bool Group::begin(Outcome& outcome) {
     auto& cell = *outcome.sampler;
+    running_ = &outcome;
+    began_ = std::chrono::steady_clock::now();
     return run_round(outcome, true, [&] {
         if (!cell.state().is_checked()) cell.check(check_);
+        outcome.check = {static_cast<double>(since(began_)) * 1e-9, 1};
         if (cell.measurement().breakdowns.empty()) {
             // The device waited for the host during the check; begin the first round as every other round,
             // with a new session.
             if (next_samples(cell) > 0) cell.release();
-            listener_.progress(fmt::format("{}: first round", name(outcome)));
+            show(fmt::format("{}: first round", name(outcome)));
             cell.round(next_samples(cell));
         }
+        const auto counting = std::chrono::steady_clock::now();
         if (check_.count_work) cell.count_work();
+        outcome.check.seconds += static_cast<double>(since(counting)) * 1e-9;
         cell.release();
     });
 }
 
 bool Group::round(Outcome& outcome) {
     auto& cell = *outcome.sampler;
-    listener_.progress(fmt::format("{}: round {}", name(outcome), cell.measurement().round_count() + 1));
+    show(fmt::format("{}: round {}", name(outcome), cell.measurement().round_count() + 1));
     return run_round(outcome, false, [&] {
         cell.round(next_samples(cell));
         cell.release();

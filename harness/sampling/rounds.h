@@ -2,6 +2,7 @@
 #pragma once
 
 #include "harness/sampling/cell_sampler.h"
+#include "harness/sampling/time_left.h"
 
 namespace tandem {
 
@@ -28,24 +29,30 @@ struct Sampling {
 struct Outcome {
     CellSampler* sampler = nullptr;
     std::string failure;        ///< of its device or its memory; empty when it finished
+    bool ended = false;         ///< it needs no more rounds
     bool converged = false;     ///< its interval is narrow enough, or it has `repeat` samples
+    WorkDone check{};           ///< with the counting replay
     std::size_t next_check = 0; ///< rounds at the next check of the interval, which is slow for many rounds
 };
 
 /// Callbacks during the sampling of a group.
 struct RoundsListener {
-    std::function<void(std::string_view)> progress = [](std::string_view) {};
+    /// Called with what runs, and the estimated seconds to the end of all cells; none while unknown.
+    std::function<void(std::string_view, std::optional<double>)> progress = [](std::string_view,
+                                                                               std::optional<double>) {};
+    std::size_t later_cells = 0; ///< cells of later groups, for the estimate
     /// Called once for each cell, when it needs no more rounds or has failed.
     std::function<void(const Outcome&, const Sampling&)> finished = [](const Outcome&, const Sampling&) {};
     /// Called after each round of a cell that needs more rounds; `first` for the first round of this run.
     std::function<void(const CellSampler&, bool first)> kept = [](const CellSampler&, bool) {};
-    /// Called between rounds: whether to end now with the results so far.
+    /// Called between rounds and before each frame: whether to end now with the results so far.
     std::function<bool()> stop = [] { return false; };
 };
 
 /// Checks every cell and takes its first round, in the given order. Further rounds visit the cells that do
 /// not yet meet the criterion, each in a new random order, so that drift of the machine affects all cells
-/// alike. One session lives at a time. Returns whether it was interrupted.
+/// alike. One session lives at a time. Returns whether it was interrupted: then the round that ran is
+/// dropped, and cells without a whole round are not finished.
 bool sample_group(std::span<CellSampler* const> cells, const CheckOptions& check,
                   const StoppingCriterion& criterion, std::uint64_t seed, const RoundsListener& listener);
 

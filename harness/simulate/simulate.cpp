@@ -3,7 +3,9 @@
 
 #include "harness/commands/commands.h"
 #include "harness/plans/inputs.h"
+#include "harness/record/environment.h"
 #include "harness/record/journal.h"
+#include "harness/sampling/interrupt.h"
 #include "base/memory_reserve.h"
 #include "harness/simulate/pictures.h"
 #include "base/progress.h"
@@ -95,17 +97,18 @@ struct StepOutputs {
     RunTotals& totals;
 };
 
-/// Runs steps until `last` are done. Adds each to the totals and the records, except steps that an earlier
-/// process recorded after the checkpoint.
+/// Runs steps until `last` are done, or a signal asks for the end. Adds each to the totals and the records,
+/// except steps that an earlier process recorded after the checkpoint.
 void run_steps(const SimulateOptions& options, std::size_t last, Simulation& simulation,
                ContactFinder& finder, const StepOutputs& outputs) {
     auto& [session, file, totals] = outputs;
     const Progress progress(options.quiet);
+    const auto first = simulation.steps_done();
     const auto recorded = options.resume ? steps_recorded(file, totals.session) : std::set<std::size_t>{};
     const auto detect = [&](const Frame& frame, std::vector<ContactPoint>& contacts) {
         finder.find(frame, contacts);
     };
-    while (simulation.steps_done() < last) {
+    for (bool stops = Interrupt::asked(); !stops && simulation.steps_done() < last;) {
         MemoryReserve::refill();
         const auto begin = Clock::now();
         const auto report = simulation.step(detect);
@@ -122,10 +125,54 @@ void run_steps(const SimulateOptions& options, std::size_t last, Simulation& sim
         session.append(report, simulation.midway());
         if (!recorded.contains(report.step)) file.append(step_record(report, search, wall, totals.session));
         const auto done = simulation.steps_done();
-        if (done % options.every == 0 || done == last) session.save(simulation);
+        stops = Interrupt::asked();
+        if (done % options.every == 0 || done == last || stops) session.save(simulation);
         progress.show(fmt::format("step {} of {}: {} contacts, {} kept, {:.1f} ms", done, last, report.found,
-                                  report.kept, static_cast<double>(wall) * 1e-6));
+                                  report.kept, static_cast<double>(wall) * 1e-6),
+                      progress.left(static_cast<double>(done - first) / static_cast<double>(last - first)));
     }
+}
+
+/// A simulation without outputs would only take time.
+void refuse_no_output(const SimulateOptions& options) {
+    if (options.recording.empty() && options.record.empty())
+        throw InputError(
+            "no output; give -o FILE.frames to record the motion, or --record FILE.jsonl for the "
+            "times of its steps");
+}
+
+/// The last line of a run that a signal ended. Returns the exit code.
+int end_interrupted(const SimulateOptions& options, std::size_t done, std::size_t last) {
+    const auto line = options.recording.empty()
+                          ? std::string()
+                          : "; to continue: " + command_line() + (options.resume ? "" : " --resume");
+    print_message("tandem: interrupted after step {} of {}{}\n", done, last, line);
+    return Interrupt::exit_code();
+}
+
+/// Runs the steps and records the run. A run that fails also leaves a line, with its number of steps and the
+/// reason.
+void run_and_record(const SimulateOptions& options, std::size_t last, const Cell& cell, const Scene& scene,
+                    Simulation& simulation, const StepOutputs& outputs) {
+    auto& [session, file, totals] = outputs;
+    try {
+        ContactFinder finder(cell, scene, simulation.frame(), !options.record.empty());
+        totals.warm_up_ns = finder.warm_up_ns();
+        run_steps(options, last, simulation, finder, outputs);
+    } catch (const std::exception& error) {
+        if (file.failed())
+            put_text(run_table(totals, true));
+        else
+            file.append_or_report(run_record(cell, scene, totals, error.what()));
+        throw;
+    }
+    put_text(run_table(totals, !options.record.empty()));
+    warn_not_converged(totals);
+    if (!options.recording.empty())
+        put("{}: {} frames; measure them with 'tandem run {}'\n", options.recording, session.frames(),
+            options.recording);
+    const bool interrupted = simulation.steps_done() < last;
+    file.append(run_record(cell, scene, totals, interrupted ? "interrupted by a signal" : ""));
 }
 
 /// Throws InputError for settings that a simulation has no use for.
@@ -184,6 +231,8 @@ int simulate_command(const SimulateOptions& options) {
     const auto cell = only_cell(request, backends);
     refuse_settings(cell.settings);
     check_coordinates(cell, scene, scene.frame(0));
+    refuse_no_output(options);
+    const Interrupt interrupt(Interrupt::stopping);
     Simulation simulation(scene);
     // Opened before the recording is made: if this fails, no recording remains to block a second try.
     RecordFile file(options.record);
@@ -195,24 +244,8 @@ int simulate_command(const SimulateOptions& options) {
     if (simulation.steps_done() > 0) put("continues after step {}\n", simulation.steps_done());
     RunTotals totals;
     totals.session = session.number();
-    // A run that fails also leaves a line, with its number of steps and the reason.
-    try {
-        ContactFinder finder(cell, scene, simulation.frame(), !options.record.empty());
-        totals.warm_up_ns = finder.warm_up_ns();
-        run_steps(options, last, simulation, finder, {session, file, totals});
-    } catch (const std::exception& error) {
-        if (file.failed())
-            put_text(run_table(totals, true));
-        else
-            file.append_or_report(run_record(cell, scene, totals, error.what()));
-        throw;
-    }
-    put_text(run_table(totals, !options.record.empty()));
-    warn_not_converged(totals);
-    if (!options.recording.empty())
-        put("{}: {} frames; measure them with 'tandem run {}'\n", options.recording, session.frames(),
-            options.recording);
-    file.append(run_record(cell, scene, totals, {}));
+    run_and_record(options, last, cell, scene, simulation, {session, file, totals});
+    if (simulation.steps_done() < last) return end_interrupted(options, simulation.steps_done(), last);
     if (pictures) pictures->draw(options.recording);
     return 0;
 }

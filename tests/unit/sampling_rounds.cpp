@@ -43,7 +43,7 @@ protected:
         for (const auto& cell : cells_)
             group.push_back(&samplers_.emplace_back(cell, scene_, range_, references_));
         RoundsListener listener;
-        listener.progress = [&](std::string_view text) {
+        listener.progress = [&](std::string_view text, std::optional<double>) {
             if (text.find("round") != text.npos) turns_.emplace_back(text);
         };
         listener.finished = [&](const Outcome& outcome, const Sampling& sampling) {
@@ -163,10 +163,54 @@ TEST_F(SamplingRounds, StopKeepsFinishedSamples) {
     EXPECT_TRUE(sampling_.interrupted);
 }
 
-TEST_F(SamplingRounds, StopBeforeACellOmitsIt) {
+/// The stop comes before the first frame of a turn: the first round of a cell.
+TEST_F(SamplingRounds, StopInTheFirstRoundOmitsTheCell) {
     most_turns_ = 2;
     EXPECT_TRUE(sample({.repeat = 50}));
-    EXPECT_EQ(outcomes_.size(), 2u);
+    ASSERT_EQ(outcomes_.size(), 1u);
+    EXPECT_THAT(outcomes_.front().sampler->measurement().rounds(), ElementsAre(0));
+}
+
+TEST_F(SamplingRounds, StopInALaterRoundKeepsTheWholeRounds) {
+    most_turns_ = 5;
+    EXPECT_TRUE(sample({.repeat = 50}));
+    ASSERT_EQ(outcomes_.size(), 3u);
+    std::size_t samples = 0;
+    for (const auto& outcome : outcomes_) {
+        const auto& m = outcome.sampler->measurement();
+        EXPECT_EQ(m.breakdowns.size(), m.samples.size());
+        EXPECT_EQ(m.conditions.size(), m.samples.size());
+        samples += m.samples.size();
+    }
+    EXPECT_EQ(samples, 4u);
+}
+
+/// The stop comes between two frames of a replay, so that a sample may be whole and its round not.
+TEST_F(SamplingRounds, AnInterruptedRoundOrCheckLeavesNothing) {
+    LocalSampler sampler(cells_.front(), scene_, range_, references_);
+    std::size_t calls = 0, most = 1;
+    sampler.stop_when([&] { return ++calls > most; });
+    EXPECT_THROW(sampler.check(check_), Interrupted);
+    EXPECT_FALSE(sampler.state().is_checked());
+    EXPECT_TRUE(sampler.measurement().candidate_pairs.empty());
+    most = 1000000;
+    sampler.check(check_);
+    sampler.round(1);
+    EXPECT_EQ(sampler.measurement().candidate_pairs.size(), 2u);
+    calls = 0;
+    sampler.round(2);
+    most = calls - 1; // before the last frame of the breakdown
+    calls = 0;
+    // Warming up takes a number of replays that varies, so that the stop may come at any frame.
+    EXPECT_THROW(
+        {
+            for (int i = 0; i < 100; ++i) sampler.round(2);
+        },
+        Interrupted);
+    const auto& m = sampler.measurement();
+    EXPECT_EQ(m.samples.size(), 1 + 2 * (m.breakdowns.size() - 1));
+    EXPECT_EQ(m.conditions.size(), m.breakdowns.size());
+    EXPECT_EQ(sampler.state().rounds, m.breakdowns.size());
 }
 
 } // namespace

@@ -6,12 +6,14 @@
 #include "harness/commands/options/reading.h"
 #include "harness/commands/options/sets.h"
 #include "harness/commands/commands.h"
+#include "harness/record/table/throughput.h"
 #include "harness/sampling/isolation/isolated_sampler.h"
 #include "base/error.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <memory>
 
 namespace tandem {
@@ -63,6 +65,10 @@ void add_cell_options(CLI::App& app, RunOptions& options, std::vector<std::strin
     app.add_option("--threads", options.threads,
                    "number of threads of device host, as --set threads=N (default: one for each core)")
         ->check(CLI::Range(0, 4096));
+    app.add_option("--filter", options.filter,
+                   "only cells whose name contains a match of this regular expression, as of grep -E; tables "
+                   "and --dry-run show the names")
+        ->option_text("REGEX");
     app.add_option("--set", sets,
                    "NAME=V1,V2, NAME=A..B:STEP or NAME=A..B*FACTOR: each value makes a cell; may be repeated")
         ->expected(1)
@@ -156,6 +162,24 @@ void add_sampling(CLI::App& app, RunOptions& options) {
         ->option_text("N");
 }
 
+/// What tables show, and how.
+void add_table(CLI::App& app, RunOptions& options) {
+    app.add_option("--columns", options.columns,
+                   "further columns of the table: pairs/s (candidate pairs a second), GB/s (bytes a second "
+                   "that the kernels need at least: inputs read once, outputs written once)")
+        ->delimiter(',')
+        ->check(CLI::IsMember(std::vector<std::string>(throughput_names.begin(), throughput_names.end())))
+        ->option_text(fmt::to_string(fmt::join(throughput_names, "|")));
+    app.add_option_function<std::string>(
+           "--format",
+           [&options](const std::string& text) {
+               options.format = text == "markdown" ? TableFormat::markdown : TableFormat::text;
+           },
+           "format of the tables (default: text)")
+        ->check(CLI::IsMember({"text", "markdown"}))
+        ->option_text("text|markdown");
+}
+
 /// add_run_options() with other defaults for `accuracy`, which always compares with the truth.
 void add_accuracy_run_options(CLI::App& app, RunOptions& options, std::vector<std::string>& sets) {
     options.truth_contacts = 1000;
@@ -246,6 +270,7 @@ Action add_run(CLI::App& app) {
                  "skip the cells that --out already has from a program of the same sources")
         ->needs("--out");
     add_sampling(app, options);
+    add_table(app, options);
     auto* isolate = app.add_flag(
         "--isolate", options.isolate,
         "run each check and each round of a cell in a process of its own: a crash or hang costs that cell "

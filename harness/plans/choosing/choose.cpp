@@ -143,7 +143,7 @@ void choose(Cell& cell, const Scene& scene, const FrameRange& range, const Choos
     const auto undecided = cell; // a copy, because sessions refer to its candidates
     check_same_candidates(undecided);
     options.progress(fmt::format("auto: {} candidates", undecided.candidates.size()));
-    Trials trials(undecided.candidates, scene, range, frames);
+    Trials trials(undecided.candidates, scene, range, frames, options.stop);
     const auto question = question_of(undecided, scene, pairs_of_a_frame(undecided, trials, frames));
     std::string warning;
     auto choice = choice_of_first(team, options.afresh ? std::nullopt : cache.find(question, warning));

@@ -14,6 +14,7 @@ inline constexpr std::size_t most_choosing_frames = 4;
 struct ChoosingOptions {
     double seconds = 10; ///< limit of the replays; preparation may take six times as long
     bool afresh = false; ///< ignore a stored choice
+    std::function<bool()> stop = [] { return false; }; ///< before a frame: whether to end with Interrupted
     std::filesystem::path folder = ChoiceCache::default_folder();
     std::function<void(std::string_view)> progress = [](std::string_view) {}; ///< called with "" at the end
 };

@@ -2,6 +2,7 @@
 #include "harness/plans/choosing/trials.h"
 
 #include "harness/plans/choosing/candidates.h"
+#include "harness/sampling/interrupt.h"
 #include "harness/sampling/measurement.h"
 #include "harness/sampling/ranks/rank_team.h"
 #include "base/error.h"
@@ -47,12 +48,13 @@ std::uint64_t pairs_of(const FrameResult& result, const RankTeam* team) {
 } // namespace
 
 Trials::Trials(std::span<const Cell> candidates, const Scene& scene, const FrameRange& range,
-               std::size_t frames)
+               std::size_t frames, std::function<bool()> stop)
     : candidates_(candidates),
       team_(candidates.front().team),
       scene_(scene),
       range_(range),
       frames_(frames),
+      stop_(std::move(stop)),
       sessions_(candidates.size()),
       failures_(candidates.size()),
       compares_contacts_(may_differ_in_k(candidates.front())) {
@@ -96,6 +98,7 @@ std::int64_t Trials::run(std::size_t candidate) {
     std::int64_t sum = 0;
     std::uint64_t pairs = 0, contacts = 0;
     for (std::size_t i = 0; i < frames_; ++i) {
+        if (decided(team_, stop_())) throw Interrupted();
         const auto frame = range_.state(i, session.settings()[parameters::motion]);
         for (auto* device : candidates_[candidate].devices) device->finish();
         const auto begin = Clock::now();

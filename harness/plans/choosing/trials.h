@@ -5,6 +5,7 @@
 #include "harness/plans/cells.h"
 
 #include <chrono>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -16,8 +17,11 @@ namespace tandem {
 /// the memory of its device.
 class Trials {
 public:
-    /// Replays use the first `frames` frames of the range. All arguments must outlive this object.
-    Trials(std::span<const Cell> candidates, const Scene& scene, const FrameRange& range, std::size_t frames);
+    /// Replays use the first `frames` frames of the range. The first three arguments must outlive this
+    /// object. Replays end with Interrupted before a frame where `stop` returns true.
+    Trials(
+        std::span<const Cell> candidates, const Scene& scene, const FrameRange& range, std::size_t frames,
+        std::function<bool()> stop = [] { return false; });
 
     /// Makes the candidate's session, if it is missing, and replays the frames once, so that kernels are
     /// compiled and buffers grow. Returns false when the candidate failed, in this call or earlier.
@@ -51,6 +55,7 @@ private:
     const Scene& scene_;
     const FrameRange& range_;
     std::size_t frames_;
+    std::function<bool()> stop_;
     std::vector<std::unique_ptr<Session>> sessions_;
     std::vector<std::string> failures_;
     const bool compares_contacts_;

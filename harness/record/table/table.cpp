@@ -4,8 +4,7 @@
 #include "harness/sampling/ranks/rank_team.h"
 #include "harness/sampling/statistics.h"
 #include "base/text_lines.h"
-#include "harness/record/table/columns.h"
-#include "harness/record/table/labels.h"
+#include "harness/record/table/throughput.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -90,11 +89,18 @@ Column column(std::string head, std::span<const Row> rows, const Text& text) {
 
 /// A column of counts; omitted when all are 0.
 template<class Count>
-Column count_column(std::string head, std::span<const Row> rows, const Count& count) {
-    auto result = column(std::move(head), rows, [&](const Row& row) { return short_count(count(row)); });
-    if (std::ranges::all_of(result.texts, [](const auto& t) { return t == "0"; }))
-        result.texts.assign(rows.size(), "");
-    return result;
+Column count_column(const std::string& head, std::span<const Row> rows, const Count& count) {
+    std::vector<std::optional<double>> counts;
+    for (const auto& row : rows) counts.emplace_back(static_cast<double>(count(row)));
+    return amounts_column(head, counts);
+}
+
+/// A column of milliseconds.
+template<class Ms>
+Column ms_column(std::string head, std::span<const Row> rows, const Ms& ms) {
+    std::vector<double> values;
+    for (const auto& row : rows) values.push_back(ms(*row.measurement));
+    return {std::move(head), millisecond_texts(values)};
 }
 
 /// The upper median over the samples; empty for one device.
@@ -107,10 +113,16 @@ std::string imbalance_text(const Measurement& m) {
     return fmt::format("{:.2f}", values[values.size() / 2]);
 }
 
-std::string half_width(const Measurement& m) {
-    if (m.round_count() < 2) return "±    ?";
-    const auto s = summarise(m.totals(), m.rounds());
-    return fmt::format("± {}", milliseconds(per_frame_ms(m, (s.high - s.low) / 2)));
+/// Half the widths of the 95 % intervals; "?" for one round.
+Column interval_column(std::span<const Row> rows) {
+    auto column = ms_column("95 %", rows, [](const Measurement& m) {
+        if (m.round_count() < 2) return 0.0;
+        const auto s = summarise(m.totals(), m.rounds());
+        return per_frame_ms(m, (s.high - s.low) / 2);
+    });
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        column.texts[i] = "± " + (rows[i].measurement->round_count() < 2 ? "?" : column.texts[i]);
+    return column;
 }
 
 std::string painted(const std::string& text, const char* code, bool colour) {
@@ -126,18 +138,36 @@ std::set<std::size_t> leaders_of(const std::vector<Verdict>& verdicts) {
     return rows;
 }
 
-std::string totals_table(std::span<const Row> rows, const RowLabels& labels,
-                         const std::vector<Verdict>& verdicts, bool colour) {
-    const auto leaders = leaders_of(verdicts);
-    const auto number_of = [&](const Row& row) { return static_cast<std::size_t>(&row - rows.data()); };
-    const std::vector<Column> columns{
-        column("ms/frame", rows,
-               [&](const Row& row) {
-                   const auto text =
-                       milliseconds(per_frame_ms(*row.measurement, median_ns(*row.measurement)));
-                   return leaders.contains(number_of(row)) ? painted(text, "1;32", colour) : text;
-               }),
-        column("95 %", rows, [](const Row& row) { return half_width(*row.measurement); }),
+Column medians_column(std::span<const Row> rows, const std::vector<Verdict>& verdicts, bool colour) {
+    auto column =
+        ms_column("ms/frame", rows, [](const Measurement& m) { return per_frame_ms(m, median_ns(m)); });
+    for (const auto row : leaders_of(verdicts))
+        column.texts[row] = painted(column.texts[row], "1;32", colour);
+    return column;
+}
+
+/// The columns that the user asked for.
+std::vector<Column> throughput_columns(std::span<const Row> rows, const Scene& scene,
+                                       const std::vector<std::string>& names) {
+    std::vector<Column> columns;
+    for (const auto& name : names) {
+        const bool is_pairs = name == throughput_names[0];
+        std::vector<std::optional<double>> amounts;
+        for (const auto& row : rows) {
+            auto amount = is_pairs ? pairs_per_s(*row.measurement) : bytes_per_s(row, scene);
+            if (amount && !is_pairs) *amount *= 1e-9;
+            amounts.push_back(amount);
+        }
+        columns.push_back(amounts_column(name, amounts));
+    }
+    return columns;
+}
+
+std::string totals_table(std::span<const Row> rows, const std::vector<std::string>& names,
+                         const std::vector<Verdict>& verdicts, const Scene& scene, const TableStyle& style) {
+    std::vector<Column> columns{
+        medians_column(rows, verdicts, style.colour),
+        interval_column(rows),
         column("rounds", rows, [](const Row& row) { return fmt::to_string(row.measurement->round_count()); }),
         count_column("pairs", rows,
                      [](const Row& row) { return total_count(row.measurement->candidate_pairs); }),
@@ -146,27 +176,28 @@ std::string totals_table(std::span<const Row> rows, const RowLabels& labels,
         count_column(
             "waits", rows,
             [](const Row& row) { return count_over(*row.measurement, all_stages(), &StageSample::waits); }),
-        column("imbalance", rows, [](const Row& row) { return imbalance_text(*row.measurement); }),
-        column("", rows, [&](const Row& row) {
-            return row.measurement->agreement.ok() ? std::string() : painted("WRONG", "1;31", colour);
-        })};
-    return in_columns(labels.by_row, "", columns);
+        column("imbalance", rows, [](const Row& row) { return imbalance_text(*row.measurement); })};
+    for (auto& more : throughput_columns(rows, scene, style.throughput)) columns.push_back(std::move(more));
+    columns.push_back(column("", rows, [&](const Row& row) {
+        return row.measurement->agreement.ok() ? std::string() : painted("WRONG", "1;31", style.colour);
+    }));
+    return in_columns(names, "", columns, style.format);
 }
 
-std::string stages_table(std::span<const Row> rows, const RowLabels& labels) {
+std::string stages_table(std::span<const Row> rows, const std::vector<std::string>& names,
+                         TableFormat format) {
     std::vector<Column> columns;
     for (const auto stage : all_stages()) {
-        auto times = column(std::string(stage_names[static_cast<std::size_t>(stage)]), rows,
-                            [&](const Row& row) { return milliseconds(stage_ms(*row.measurement, stage)); });
-        if (std::ranges::all_of(times.texts, [](const auto& t) { return t == "0.000"; })) continue;
-        columns.push_back(std::move(times));
+        const auto ms = [stage](const Measurement& m) { return stage_ms(m, stage); };
+        if (std::ranges::all_of(rows, [&](const Row& row) { return ms(*row.measurement) < 5e-6; })) continue;
+        columns.push_back(ms_column(std::string(stage_names[static_cast<std::size_t>(stage)]), rows, ms));
     }
-    columns.push_back(column("frame", rows, [](const Row& row) {
-        return milliseconds(replay_ms(*row.measurement, [](const InstrumentedReplay& r) {
+    columns.push_back(ms_column("frame", rows, [](const Measurement& m) {
+        return replay_ms(m, [](const InstrumentedReplay& r) {
             return std::accumulate(r.frame_ns.begin(), r.frame_ns.end(), std::int64_t{0});
-        }));
+        });
     }));
-    return in_columns(labels.by_row, "stages, ms/frame", columns);
+    return in_columns(names, "stages, ms/frame", columns, format);
 }
 
 /// Milliseconds a frame of one device in a stage, by the host's clock for the host's work.
@@ -191,30 +222,41 @@ double device_ms(const Measurement& m, std::size_t device) {
     return per_frame_ms(m, summarise(samples).median);
 }
 
+/// A column of one number a device.
+template<class Value>
+std::vector<double> by_device(const Measurement& m, const Value& value) {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < m.shared.front().size(); ++i) values.push_back(static_cast<double>(value(i)));
+    return values;
+}
+
+Column device_counts(const std::string& head, const Measurement& m, std::uint64_t DeviceWork::*member) {
+    const auto counts = by_device(m, [&](std::size_t device) { return mean_over_frames(m, device, member); });
+    return amounts_column(head, {counts.begin(), counts.end()});
+}
+
 /// One row for each of several devices of a cell; empty for one device.
-std::string devices_table(const Row& row, const std::string& label) {
+std::string devices_table(const Row& row, TableFormat format) {
     const auto& m = *row.measurement;
     if (m.shared.empty() || m.samples.empty() || m.breakdowns.empty()) return {};
     const auto infos = infos_of(*row.cell);
     std::vector<std::string> devices;
-    std::vector<Column> columns{{"bodies", {}}, {"body pairs", {}}, {"pairs", {}}, {"ms/frame", {}}};
-    for (const auto stage : all_stages())
-        columns.push_back({std::string(stage_names[static_cast<std::size_t>(stage)]), {}});
-    for (std::size_t i = 0; i < m.shared.front().size(); ++i) {
+    for (std::size_t i = 0; i < m.shared.front().size(); ++i)
         devices.push_back(row.cell->team != nullptr ? fmt::format("rank {}, {}", i, infos[i].id)
                                                     : infos[i].id);
-        columns[0].texts.push_back(short_count(mean_over_frames(m, i, &DeviceWork::bodies)));
-        columns[1].texts.push_back(short_count(mean_over_frames(m, i, &DeviceWork::body_pairs)));
-        columns[2].texts.push_back(short_count(mean_over_frames(m, i, &DeviceWork::pairs)));
-        columns[3].texts.push_back(milliseconds(device_ms(m, i)));
-        for (std::size_t stage = 0; stage < stage_names.size(); ++stage)
-            columns[4 + stage].texts.push_back(
-                milliseconds(device_stage_ms(m, i, static_cast<Stage>(stage))));
+    std::vector<Column> columns{
+        device_counts("bodies", m, &DeviceWork::bodies),
+        device_counts("body pairs", m, &DeviceWork::body_pairs),
+        device_counts("pairs", m, &DeviceWork::pairs),
+        {"ms/frame", millisecond_texts(by_device(m, [&](std::size_t i) { return device_ms(m, i); }))}};
+    for (const auto stage : all_stages()) {
+        const auto ms = by_device(m, [&](std::size_t i) { return device_stage_ms(m, i, stage); });
+        if (std::ranges::all_of(ms, [](double value) { return value < 5e-6; })) continue;
+        columns.push_back({std::string(stage_names[static_cast<std::size_t>(stage)]), millisecond_texts(ms)});
     }
-    for (auto& column : columns)
-        if (std::ranges::all_of(column.texts, [](const auto& t) { return t == "0.000"; }))
-            column.texts.assign(devices.size(), "");
-    return fmt::format("devices of {}\n{}\n", label, in_columns(devices, "a frame", columns));
+    const bool is_markdown = format == TableFormat::markdown;
+    return fmt::format("{}{}{}\n", paragraph("devices of " + describe(*row.cell), 2), is_markdown ? "\n" : "",
+                       in_columns(devices, "a frame", columns, format));
 }
 
 /// With the 95 % interval for at least two rounds. "≈" precedes the ratio when the interval contains 1; "-"
@@ -232,14 +274,13 @@ std::string quotient(double above, double below) {
 }
 
 /// Ratios of the comparable rows after `base` to `base`.
-std::string ratios_to(const Row& base, const std::string& base_label, std::span<const Row> rows,
-                      const std::vector<std::string>& labels) {
+std::string ratios_to(const Row& base, std::span<const Row> rows, TableFormat format) {
     std::vector<Row> compared;
     std::vector<std::string> names;
-    for (std::size_t i = 0; i < rows.size(); ++i)
-        if (rows[i].cell != base.cell && comparable(base, rows[i])) {
-            compared.push_back(rows[i]);
-            names.push_back(labels[i]);
+    for (const auto& row : rows)
+        if (row.cell != base.cell && comparable(base, row)) {
+            compared.push_back(row);
+            names.push_back(describe(*row.cell));
         }
     if (compared.empty()) return {};
     const auto& b = *base.measurement;
@@ -255,33 +296,34 @@ std::string ratios_to(const Row& base, const std::string& base_label, std::span<
         ratios("read", stage(Stage::read)),
         ratios("write", stage(Stage::write)),
         ratios("launches", [](const Measurement& m) { return static_cast<double>(launches_of(m)); })};
-    return fmt::format("times as long as {}\n{}\n", base_label, in_columns(names, "", columns));
+    const bool is_markdown = format == TableFormat::markdown; // in which a line before a table joins it
+    return fmt::format("{}{}{}\n", paragraph("times as long as " + describe(*base.cell), 2),
+                       is_markdown ? "\n" : "", in_columns(names, "", columns, format));
 }
 
 /// The first row of each set of comparable rows is the base of its ratios.
-std::string ratio_tables(std::span<const Row> rows, const RowLabels& labels) {
+std::string ratio_tables(std::span<const Row> rows, TableFormat format) {
     std::string text;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const bool is_first =
             std::ranges::none_of(rows.first(i), [&](const Row& r) { return comparable(r, rows[i]); });
-        if (is_first)
-            text += ratios_to(rows[i], labels.by_row[i], rows.subspan(i),
-                              {labels.by_row.begin() + static_cast<std::ptrdiff_t>(i), labels.by_row.end()});
+        if (is_first) text += ratios_to(rows[i], rows.subspan(i), format);
     }
     return text;
 }
 
 } // namespace
 
-std::string result_tables(std::span<const Row> rows, const std::vector<Verdict>& verdicts, bool colour) {
+std::string result_tables(std::span<const Row> rows, const std::vector<Verdict>& verdicts, const Scene& scene,
+                          const TableStyle& style) {
     if (rows.empty()) return {};
-    const auto labels = row_labels(rows);
-    auto text = labels.common.empty() ? std::string() : "all: " + labels.common + "\n\n";
-    text += totals_table(rows, labels, verdicts, colour) + "\n";
-    text += stages_table(rows, labels) + "\n";
-    for (std::size_t i = 0; i < rows.size(); ++i) text += devices_table(rows[i], labels.by_row[i]);
-    text += ratio_tables(rows, labels);
-    for (const auto& verdict : verdicts) text += paragraph(verdict_sentence(verdict, rows, labels.by_row), 2);
+    std::vector<std::string> names;
+    for (const auto& row : rows) names.push_back(describe(*row.cell));
+    auto text = totals_table(rows, names, verdicts, scene, style) + "\n";
+    text += stages_table(rows, names, style.format) + "\n";
+    for (const auto& row : rows) text += devices_table(row, style.format);
+    text += ratio_tables(rows, style.format);
+    for (const auto& verdict : verdicts) text += paragraph(verdict_sentence(verdict, rows, names), 2);
     return text;
 }
 

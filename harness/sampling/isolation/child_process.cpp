@@ -85,7 +85,7 @@ pid_t start(std::span<const std::string> arguments, const Descriptor& input, con
     return child;
 }
 
-enum class End { of_answer, of_output, of_time };
+enum class End { of_answer, of_output, of_time, of_user };
 
 /// A limit in seconds from the construction; 0: no limit.
 class Deadline {
@@ -123,18 +123,32 @@ bool read_some(const Descriptor& pipe, std::string& output) {
     return count > 0;
 }
 
-/// Sends the input and reads the output until the child answers, closes its output, or the time is up.
+/// When to give up on an answer: after `seconds` (0: never), or once `stop` returns true.
+struct Patience {
+    double seconds;
+    const std::function<bool()>& stop;
+};
+
+/// Milliseconds for poll() until the deadline or the next call of `stop`.
+int next_look_ms(const Deadline& deadline) {
+    constexpr int between_looks_ms = 50;
+    const int left = deadline.left_ms();
+    return left < 0 ? between_looks_ms : std::min(left, between_looks_ms);
+}
+
+/// Sends the input and reads the output until the child answers, closes its output, or the patience ends.
 End exchange(Descriptor& to, const Descriptor& from, std::string_view input, std::string& output,
-             double seconds) {
-    const Deadline deadline(seconds);
+             const Patience& patience) {
+    const Deadline deadline(patience.seconds);
     for (;;) {
+        if (patience.stop()) return End::of_user;
         // poll() ignores negative descriptors.
         const int writable = input.empty() ? -1 : to.number();
         std::array<pollfd, 2> ends{{{from.number(), POLLIN, 0}, {writable, POLLOUT, 0}}};
-        const int ready = poll(ends.data(), ends.size(), deadline.left_ms());
+        const int ready = poll(ends.data(), ends.size(), next_look_ms(deadline));
         if (deadline.has_expired()) return End::of_time;
         if (ready < 0 && errno != EINTR) fail("poll", errno);
-        if (ready < 0) continue;
+        if (ready <= 0) continue;
         if (ends[1].revents != 0) write_some(to, input);
         if (ends[0].revents == 0) continue;
         if (!read_some(from, output)) return End::of_output;
@@ -195,12 +209,13 @@ ChildProcess::~ChildProcess() {
 
 bool ChildProcess::has_ended() const { return !running_; }
 
-ChildResult ChildProcess::ask(const std::string& line, double seconds) {
+ChildResult ChildProcess::ask(const std::string& line, double seconds, const std::function<bool()>& stop) {
     ChildResult result;
-    const auto end = exchange(running_->to, running_->from, line + '\n', result.output, seconds);
+    const auto end = exchange(running_->to, running_->from, line + '\n', result.output, {seconds, stop});
     if (end == End::of_answer) return result;
     const auto running = std::exchange(running_, nullptr);
     if (end != End::of_output) kill(running->child, SIGKILL);
+    result.stopped = end == End::of_user;
     const int status = wait_for(running->child);
     result.failure = end == End::of_time ? fmt::format("took longer than {:g} s and was ended", seconds)
                                          : failure_text(status);

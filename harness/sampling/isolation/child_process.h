@@ -10,8 +10,9 @@ namespace tandem {
 
 /// The result of a request to a child process.
 struct ChildResult {
-    std::string output;  ///< of the process, up to the end of its answer
-    std::string failure; ///< "ended by signal 11 (Segmentation fault)"; empty after an answer or exit code 0
+    std::string output;   ///< of the process, up to the end of its answer
+    std::string failure;  ///< "ended by signal 11 (Segmentation fault)"; empty after an answer or exit code 0
+    bool stopped = false; ///< killed because `stop` returned true
 };
 
 /// Ends an answer on a child's standard output. Text that libraries print does not contain this byte.
@@ -27,8 +28,10 @@ public:
     ~ChildProcess();
 
     /// Writes a line to its standard input and waits for the end of its answer. Kills it after `seconds` (0:
-    /// no limit). After a request without an answer the process has ended: do not call ask() again.
-    ChildResult ask(const std::string& line, double seconds);
+    /// no limit), or once `stop` returns true, which is called twenty times a second. After a request without
+    /// an answer the process has ended: do not call ask() again.
+    ChildResult ask(
+        const std::string& line, double seconds, const std::function<bool()>& stop = [] { return false; });
     bool has_ended() const;
 
     ChildProcess(const ChildProcess&) = delete;

@@ -3,6 +3,7 @@
 #include "harness/sampling/isolation/isolated_sampler.h"
 
 #include "harness/sampling/isolation/child_process.h"
+#include "harness/sampling/interrupt.h"
 #include "harness/sampling/isolation/request.h"
 #include "base/error.h"
 
@@ -25,11 +26,13 @@ nlohmann::json answer_of(const ChildResult& result) {
         fmt::format("its process {}", result.failure.empty() ? "ended without an answer" : result.failure));
 }
 
-/// Sends a request to a new child process. Throws DeviceError when it ends without an answer, and InputError
-/// when it rejects the request.
-nlohmann::json ask_child(const nlohmann::json& request, double timeout) {
+/// Sends a request to a new child process. Throws DeviceError when it ends without an answer, InputError
+/// when it rejects the request, and Interrupted when `stop` returned true first.
+nlohmann::json ask_child(const nlohmann::json& request, double timeout, const std::function<bool()>& stop) {
     ChildProcess child(std::array<std::string, 1>{"isolated"});
-    auto answer = answer_of(child.ask(request.dump(), timeout));
+    const auto result = child.ask(request.dump(), timeout, stop);
+    if (result.stopped) throw Interrupted();
+    auto answer = answer_of(result);
     if (answer.contains("input_error")) throw InputError(answer["input_error"].get<std::string>());
     return answer;
 }
@@ -46,7 +49,7 @@ void leave_out_this_process(std::span<RoundConditions> rounds, std::uint32_t fir
 
 void IsolatedSampler::ask(const char* work, const CheckOptions& options, std::size_t samples) {
     const auto request = request_json(options_, *this, {work, samples, options});
-    const auto answer = ask_child(request, options_.timeout);
+    const auto answer = ask_child(request, options_.timeout, stop_);
     if (answer.contains("checked") && !answer["checked"].is_null()) {
         take_checked(state_, answer["checked"], cell_);
         const auto first = state_.rounds;
@@ -58,7 +61,7 @@ void IsolatedSampler::ask(const char* work, const CheckOptions& options, std::si
 
 /// The same process also counts work.
 void IsolatedSampler::do_check(const CheckOptions& options) {
-    options.progress(fmt::format("{}: checking in another process", describe(cell_)));
+    options.progress(fmt::format("{}: checking in another process", describe(cell_)), 0);
     ask("check", options, 0);
 }
 

@@ -60,10 +60,15 @@ void RankTeam::check_same(const std::string& own) {
     });
 }
 
-std::unique_ptr<Session> RankTeam::prepare(const Cell& cell, const Scene& scene) {
+Settings RankTeam::settings_of(const Cell& cell) const {
     auto settings = cell.settings;
     if (settings[parameters::threads] == 0 && cell.devices.front()->info().id == "host")
         settings.set(parameters::threads(threads_of_a_rank(local_rank_)));
+    return settings;
+}
+
+std::unique_ptr<Session> RankTeam::prepare(const Cell& cell, const Scene& scene) {
+    const auto settings = settings_of(cell);
     together([&] { cell.algorithm->check(cell.devices, settings); });
     try {
         return std::make_unique<JobSession>(
@@ -71,6 +76,11 @@ std::unique_ptr<Session> RankTeam::prepare(const Cell& cell, const Scene& scene)
     } catch (const InputError& error) { // the settings are the same on all ranks, and so is this error
         throw SharedError<InputError>(error.what());
     }
+}
+
+Settings session_settings(const Cell& cell, const Scene& scene) {
+    const auto settings = cell.team != nullptr ? cell.team->settings_of(cell) : cell.settings;
+    return cell.algorithm->fitted(settings, cell.devices.front()->info(), &scene);
 }
 
 std::unique_ptr<Session> prepare_session(const Cell& cell, const Scene& scene) {

@@ -42,6 +42,8 @@ public:
     void open(const Device& own);
     /// Throws InputError unless all ranks have the same text: keys of cells and digests of scenes.
     void check_same(const std::string& own);
+    /// The settings of the cell's session on this rank: the ranks of a machine divide its threads.
+    Settings settings_of(const Cell& cell) const;
     /// Prepares a session on all ranks.
     std::unique_ptr<Session> prepare(const Cell& cell, const Scene& scene);
     /// Gathers one message from each rank, by rank.
@@ -70,6 +72,8 @@ Value decided(RankTeam* team, const Value& own) {
     return team == nullptr ? own : team->decided(own);
 }
 
+/// The settings that a session of the cell has, as the key of its record lists them. Throws InputError.
+Settings session_settings(const Cell& cell, const Scene& scene);
 /// Prepares a session of a cell on this process, or on all ranks of its team.
 std::unique_ptr<Session> prepare_session(const Cell& cell, const Scene& scene);
 /// The devices of a cell, or those of all ranks of its team.

@@ -3,6 +3,8 @@
 #include "harness/commands/commands.h"
 #include "harness/verify/accuracy/figures.h"
 #include "harness/verify/adversarial.h"
+#include "harness/sampling/interrupt.h"
+#include "harness/plans/cell_filter.h"
 #include "harness/plans/inputs.h"
 #include "harness/plans/job.h"
 #include "base/standard_streams.h"
@@ -132,7 +134,7 @@ void print_row(const Cell& cell, const Measurement& m) {
         e.missed() > 0 ? "  MISSES" : "");
 }
 
-/// Measures all cells on one scene, until a record cannot be written. Returns the exit code.
+/// Measures all cells on one scene, until a record cannot be written or an interrupt. Returns the exit code.
 int measure_scene(const RunOptions& options, const std::vector<Cell>& cells, RecordFile& file) {
     auto own = options;
     auto scene = open_scene(own);
@@ -146,6 +148,7 @@ int measure_scene(const RunOptions& options, const std::vector<Cell>& cells, Rec
     Measuring measuring;
     measuring.check = {options.check, false, &truths};
     measuring.stopping.repeat = options.repeat.value_or(3);
+    measuring.stop = Interrupt::asked;
     int code = 0;
     print_header();
     const auto ended = [&](const CellResult& result) {
@@ -156,10 +159,11 @@ int measure_scene(const RunOptions& options, const std::vector<Cell>& cells, Rec
         if (result.measured && m.errors) print_row(*result.cell, m);
     };
     // Measure cell by cell, not in rounds: rows appear early, and times are not compared between cells.
+    auto later = job.cells.size();
     for (const auto& cell : job.cells)
-        measure_cells(job, {&cell, 1}, references, measuring, file, {progress, ended});
+        measure_cells(job, {&cell, 1}, references, measuring, file, {progress, ended, --later});
     put("\n");
-    return code;
+    return Interrupt::asked() && !file.failed() ? Interrupt::exit_code() : code;
 }
 
 } // namespace
@@ -171,7 +175,8 @@ int accuracy_command(const AccuracyOptions& options) {
     const auto backends = open_backends(request.devices, options.run.require);
     check_required(backends, options.run.require);
     const auto devices = open_devices(options.run, backends, request.devices);
-    const auto cells = request.sets.empty() ? sweep(request, devices) : plan(request, devices);
+    auto cells = request.sets.empty() ? sweep(request, devices) : plan(request, devices);
+    keep_matching(cells, options.run.filter);
     for (const auto& cell : cells)
         if (cell.settings[parameters::output] == Output::contacts)
             throw InputError(
@@ -185,13 +190,14 @@ int accuracy_command(const AccuracyOptions& options) {
     const auto records =
         figures && options.run.out.empty() ? options.figures + "/accuracy.jsonl" : options.run.out;
     RecordFile file(records);
+    const Interrupt interrupt(Interrupt::stopping);
     int code = 0;
     for (const auto& given : scenes)
         for (const auto& scene : expand(given, options.run.degenerate)) {
             auto own = options.run;
             own.scene = scene;
             code = std::max(code, measure_scene(own, cells, file));
-            if (file.failed()) return code;
+            if (file.failed() || Interrupt::asked()) return code;
         }
     put("ms/frame: the whole frame; ratio: candidates per intersecting pair; errors of contacts are 99th "
         "percentiles;\n"
