@@ -103,6 +103,8 @@ class Completion(Case):
         for option, values in (("--truth", ["none", "pairs", "contacts"]), ("--degenerate", ["flat", "skip", "reject"]), ("--duplicates", ["keep", "merge", "reject"])):
             self.assertEqual(asked("run", option, ""), values)
         self.assertEqual(asked("compare", "--format", "m"), ["markdown"])
+        self.assertEqual(asked("run", "--format", ""), ["text", "markdown"])
+        self.assertEqual(set(asked("run", "--columns", "")), {"pairs/s", "GB/s"})
 
     def test_completion_is_fast(self):
         times = []

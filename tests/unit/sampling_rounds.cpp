@@ -159,7 +159,7 @@ TEST_F(SamplingRounds, StopKeepsFinishedSamples) {
     ASSERT_EQ(outcomes_.size(), 3u);
     std::size_t samples = 0;
     for (const auto& outcome : outcomes_) samples += outcome.sampler->measurement().samples.size();
-    EXPECT_EQ(samples, 8u);
+    EXPECT_EQ(samples, 7u); // the eighth turn stops before its first frame
     EXPECT_TRUE(sampling_.interrupted);
 }
 
@@ -169,20 +169,6 @@ TEST_F(SamplingRounds, StopInTheFirstRoundOmitsTheCell) {
     EXPECT_TRUE(sample({.repeat = 50}));
     ASSERT_EQ(outcomes_.size(), 1u);
     EXPECT_THAT(outcomes_.front().sampler->measurement().rounds(), ElementsAre(0));
-}
-
-TEST_F(SamplingRounds, StopInALaterRoundKeepsTheWholeRounds) {
-    most_turns_ = 5;
-    EXPECT_TRUE(sample({.repeat = 50}));
-    ASSERT_EQ(outcomes_.size(), 3u);
-    std::size_t samples = 0;
-    for (const auto& outcome : outcomes_) {
-        const auto& m = outcome.sampler->measurement();
-        EXPECT_EQ(m.breakdowns.size(), m.samples.size());
-        EXPECT_EQ(m.conditions.size(), m.samples.size());
-        samples += m.samples.size();
-    }
-    EXPECT_EQ(samples, 4u);
 }
 
 /// The stop comes between two frames of a replay, so that a sample may be whole and its round not.
