@@ -58,9 +58,9 @@ def mesh_of(mesh: Any, name: str) -> Mesh:
 
 
 def _tetrahedra(cells, name):
-    others = [kind for kind in cells if kind not in TETRAHEDRON and kind not in POINTS_LINES_FACES]
-    if others:
-        raise ValueError(f"{name}: has cells of type {_type_name(others[0])}; give linear tetrahedra only")
+    unusable = [kind for kind in cells if kind not in TETRAHEDRON and kind not in POINTS_LINES_FACES]
+    if unusable:
+        raise ValueError(f"{name}: has cells of type {_type_name(unusable[0])}; give linear tetrahedra only")
     found = [rows for kind, rows in cells.items() if kind in TETRAHEDRON]
     if not found:
         raise ValueError(f"{name}: has no tetrahedra among its cells ({', '.join(map(_type_name, cells)) or 'none'}); fill the surface with tetrahedra "

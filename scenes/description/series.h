@@ -15,7 +15,7 @@ public:
     /// World vertices of a frame. Reads its file again, so that no frames are kept in memory. Throws
     /// InputError if the file has changed.
     std::vector<Eigen::Vector3d> vertices(std::size_t frame) const;
-    /// Of the vertices of all frames.
+    /// Digest of the vertices of all frames.
     std::uint64_t digest() const;
 
 private:
