@@ -36,7 +36,7 @@ def setUpModule():
     copy = pathlib.Path(FOLDER.name) / "source"
     shutil.copytree(SOURCE / "python", copy / "python", ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copytree(SOURCE / "results/paper", copy / "results/paper")
-    for name in ("pyproject.toml", "LICENSE", "CITATION.cff", "scripts/render"):
+    for name in ("pyproject.toml", "LICENSE", "NOTICE.md", "CITATION.cff", "scripts/render"):
         (copy / name).parent.mkdir(exist_ok=True)
         shutil.copy(SOURCE / name, copy / name)
     tools = SOURCE / ".cache/python"

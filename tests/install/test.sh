@@ -71,6 +71,7 @@ if command -v pkg-config >/dev/null && PKG_CONFIG_PATH=$work/prefix/lib/pkgconfi
   [ "$("$work/collide")" = "$collide" ]
 fi
 [ -s "$work"/prefix/share/doc/tandem/LICENSE ]
+[ -s "$work"/prefix/share/doc/tandem/NOTICE.md ]
 # A component that this build has not is refused by name.
 mkdir "$work/component" && printf 'cmake_minimum_required(VERSION 3.25)\nproject(c LANGUAGES CXX)\nfind_package(tandem REQUIRED COMPONENTS vulkan)\n' >"$work/component/CMakeLists.txt"
 if cmake -S "$work/component" -B "$work/component/build" -DCMAKE_PREFIX_PATH="$work/prefix;$(found CMAKE_PREFIX_PATH)" "${given[@]}" >"$work/log" 2>&1; then
