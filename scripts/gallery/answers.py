@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: MIT
+"""Which answers of records are right: digests of equal work are equal on every machine."""
+from tandem.report.groups import BOUNDS
+
+# Besides the bounds: settings that determine the pairs, with the value of records that do not have them. With output=contacts, the narrow phase does too.
+OTHERS = {"self": "off", "motion": "none"}
+NARROW_PHASE = ("contact_rule", "decision")
+
+
+def work_of(source):
+    """A value that is equal for records whose candidate pairs have to be equal."""
+    recorded, record = source.shown.recorded, source.record
+    settings = recorded.settings
+    narrow = [settings.get(name) for name in NARROW_PHASE] if settings.get("output") == "contacts" else []
+    return (source.shown.scene_digest, record["frames"]["first"], record["frames"]["last"], recorded.names["handling"],
+            *(settings.get(name, usual) for name, usual in (BOUNDS | OTHERS).items()),
+            settings.get("broad") == "sphere_boxes", *narrow)  # such boxes leave out candidates that do not meet
+
+
+def _known(sources):
+    """The digest by work, of committed records that were compared with the reference, otherwise of submitted ones that all agree."""
+    found = {}
+    for is_submitted in (False, True):
+        digests = {}
+        for source in sources:
+            recorded = source.shown.recorded
+            if source.is_submitted == is_submitted and recorded.status == "ok" and source.record["agreement"] and recorded.pairs and recorded.pairs.count:
+                digests.setdefault(work_of(source), set()).add(recorded.pairs)
+        for work, own in digests.items():
+            found.setdefault(work, own)
+    return found
+
+
+def judge(sources):
+    """Sets the status of records with another digest than the known one to wrong. Returns places of records that nothing checks: neither their own
+    comparison with the reference nor another record of the same work."""
+    known, unchecked = _known(sources), set()
+    for source in sources:
+        recorded = source.shown.recorded
+        if recorded.status != "ok" or recorded.pairs is None or recorded.pairs.count == 0:
+            if recorded.status == "ok":
+                unchecked.add(source.place)
+            continue
+        digests = known.get(work_of(source))
+        if digests is None:
+            unchecked.add(source.place)
+        elif len(digests) > 1 or recorded.pairs not in digests or _contradicts_itself(source.record):
+            recorded.status = "wrong"
+    return unchecked
+
+
+def _contradicts_itself(record):
+    """Whether the timed answer differs from the one that was compared with the reference."""
+    compared, timed = ((record[part] or {}).get("digest") for part in ("agreement", "work"))
+    return bool(compared and timed and compared != timed)
