@@ -67,9 +67,9 @@ class ResultsPage(ScriptCase):
 
     def page(self, code, text, *files):
         out = self.work / "page.html"
-        status, said, errors = called(page_script, *files, "--results", self.results, "-o", out)
-        self.assertEqual((status, said.count("\n")), (code, 1), (said, errors))
-        self.assertIn(text, said)
+        status, output, errors = called(page_script, *files, "--results", self.results, "-o", out)
+        self.assertEqual((status, output.count("\n")), (code, 1), (output, errors))
+        self.assertIn(text, output)
         shown = Rows(out.read_text())
         self.assertLessEqual(shown.tags & {"script", "img", "iframe", "b"}, set())
         return shown.rows, errors, out.read_text()
@@ -178,8 +178,8 @@ class ResultsPage(ScriptCase):
 
     def test_errors_of_the_project_are_errors(self):
         (self.results / "cpu/walks.jsonl").write_text("no record\n")
-        status, said, errors = called(page_script, "--results", self.results, "-o", self.work / "none.html")
-        self.assertEqual((status, said, len(errors)), (2, "", 1))
+        status, output, errors = called(page_script, "--results", self.results, "-o", self.work / "none.html")
+        self.assertEqual((status, output, len(errors)), (2, "", 1))
         self.assertIn("walks.jsonl:1: is not JSON", errors[0])
         self.assertFalse((self.work / "none.html").exists())
         with self.assertRaisesRegex(BadUse, "use a checkout with its history"):

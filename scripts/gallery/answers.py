@@ -3,7 +3,7 @@
 from tandem.report.groups import BOUNDS
 
 # Besides the bounds: settings that determine the pairs, with the value of records that do not have them. With output=contacts, the narrow phase does too.
-OTHERS = {"self": "off", "motion": "none"}
+FURTHER = {"self": "off", "motion": "none"}
 NARROW_PHASE = ("contact_rule", "decision")
 
 
@@ -13,7 +13,7 @@ def work_of(source):
     settings = recorded.settings
     narrow = [settings.get(name) for name in NARROW_PHASE] if settings.get("output") == "contacts" else []
     return (source.shown.scene_digest, record["frames"]["first"], record["frames"]["last"], recorded.names["handling"],
-            *(settings.get(name, usual) for name, usual in (BOUNDS | OTHERS).items()),
+            *(settings.get(name, usual) for name, usual in (BOUNDS | FURTHER).items()),
             settings.get("broad") == "sphere_boxes", *narrow)  # such boxes leave out candidates that do not meet
 
 
