@@ -92,7 +92,7 @@ class Licenses(unittest.TestCase):
         self.assertEqual(project["project"]["license-files"], ["LICENSE", "NOTICE.md"])
         notice = (SOURCE / "NOTICE.md").read_text()
         compiled_in = {"Boost": "Boost", "Eigen3": "Eigen", "fmt": "{fmt}", "nlohmann_json": "JSON for Modern C++", "CLI11": "CLI11"}
-        shared = {"OpenCL": "OpenCL", "ZLIB": "zlib", "TBB": "oneTBB", "GMP": "GMP", "embree": "Embree", "MPI": "MPI"}
+        shared = {"OpenCL": "OpenCL", "ZLIB": "zlib", "LZ4": "LZ4", "LibLZMA": "liblzma", "TBB": "oneTBB", "GMP": "GMP", "embree": "Embree", "MPI": "MPI"}
         tools = {"Threads", "Python3"}
         found = set(re.findall(r"find_package\((\w+)", (SOURCE / "CMakeLists.txt").read_text()))
         self.assertEqual(found - tools - compiled_in.keys() - shared.keys(), set(), "NOTICE.md has to name them")
