@@ -41,12 +41,10 @@ void print_results(std::span<const Row> rows, const std::vector<Verdict>& verdic
                    std::span<const CellResult* const> results) {
     if (rows.empty()) return;
     const bool is_text = job.options.format == TableFormat::text;
-    put_text("
-"
+    put_text("\n"
              + result_tables(rows, verdicts, job.scene,
                              {job.options.format, is_text && prints_colour(), job.options.columns})
-             + "
-");
+             + "\n");
     for (const auto* result : results) {
         if (!result->measured) continue;
         const auto doubt = doubts(*result);

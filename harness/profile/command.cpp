@@ -178,8 +178,7 @@ int Profiling::go() {
                                           run_.seed ? *run_.seed : std::random_device{}(), listener);
     if (traced_ != nullptr && *trace_ && !file_->failed() && !interrupted)
         trace_->write(trace_frame(*traced_, *job_));
-    if (traced_ != nullptr) put_text("
-" + profile::profile_legend());
+    if (traced_ != nullptr) put_text("\n" + profile::profile_legend());
     if (!run_.out.empty()) put("{} records appended to {}\n", file_->appended(), run_.out);
     return interrupted ? Interrupt::exit_code() : code_;
 }

@@ -3,8 +3,10 @@
 import contextlib
 import io
 import os
+import tempfile
 
 from ..errors import BadUse
+from ..files import check_output, replace_whole
 from . import Parser, check_packages, run
 
 
@@ -58,14 +60,22 @@ def _read(path):
     return meshio.Mesh(given.points, given.cells)
 
 
+def _vtu(mesh):
+    """The bytes of a .vtu file. meshio writes files only."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "mesh.vtu")
+        mesh.write(path, file_format="vtu")
+        with open(path, "rb") as file:
+            return file.read()
+
+
 def _make(arguments):
     options = _parsed(arguments)
     if not options.output.endswith(".vtu"):
         raise BadUse(f"{options.output}: tandem convert writes .vtu; name a file FILE.vtu")
     if not os.path.isfile(options.file):
         raise BadUse(f"{options.file}: there is no such file; check the path")
-    if os.path.exists(options.output) and os.path.samefile(options.file, options.output):
-        raise BadUse(f"{options.output}: is the input; name another file")
+    check_output(options.output, [options.file])
     check_packages("tandem convert", ("numpy", "meshio"))
     import numpy
     mesh = _read(options.file)
@@ -73,10 +83,7 @@ def _make(arguments):
     if tetrahedra == 0:
         raise BadUse(f"{options.file}: no tetrahedra; export the volume, not only the surface")
     mesh.points = numpy.asarray(mesh.points, dtype=float)
-    try:
-        mesh.write(options.output, file_format="vtu")
-    except OSError as problem:
-        raise BadUse(f"{options.output}: cannot be written ({problem.strerror}); choose another file") from None
+    replace_whole(options.output, _vtu(mesh))
     return f"{options.output}: {len(mesh.points)} vertices and {tetrahedra} tetrahedra of {options.file}\n", 0
 
 

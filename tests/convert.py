@@ -1,0 +1,79 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""convert.py PROGRAM SOURCE: tandem convert brings files of other formats to .vtu, which gives the answer of the same mesh in a format of
+tandem's own; bad files and outputs are refused in one line."""
+import os
+import unittest
+
+import meshio
+
+from program import Case, bar, gmsh, tandem
+
+POSES = ("--pose", "0 0 0 1 0 0 0", "--pose", "1 0.25 0.125 1 0 0 0")
+
+
+class Convert(Case):
+    def setUp(self):
+        self.points, self.tets = bar(3, (0, 0, 0))
+
+    def answer(self, path):
+        """Digests of pairs and contacts of two bodies of a mesh."""
+        out = self.work / "answer.jsonl"
+        out.unlink(missing_ok=True)
+        status, text, errors = tandem("run", "--mesh", path, "--mesh", path, *POSES, "--device", "host", "--algorithm", "tiled", "--out", out, "--quiet")
+        self.assertEqual((status, errors), (0, []), text)
+        agreement = self.records(out)[0]["agreement"]
+        self.assertGreater(agreement["pairs"]["count"] if isinstance(agreement.get("pairs"), dict) else self.records(out)[0]["work"]["candidate_pairs"][0], 0)
+        return {name: value for name, value in agreement.items() if "digest" in name}
+
+    def converted(self, source):
+        output = self.work / "converted.vtu"
+        output.unlink(missing_ok=True)
+        status, out, errors = tandem("convert", source, "-o", output)
+        self.assertEqual((status, errors), (0, []), out)
+        self.assertEqual(out, f"{output}: {len(self.points)} vertices and {len(self.tets)} tetrahedra of {source}\n")
+        return output
+
+    def test_formats_of_meshio_give_the_same_answer(self):
+        expected = self.answer(gmsh(self.work / "own.msh", self.points, self.tets))
+        self.assertTrue(expected)
+        for suffix in (".inp", ".bdf", ".xdmf", ".med", ".e", ".su2"):
+            with self.subTest(suffix):
+                source = self.work / f"mesh{suffix}"
+                meshio.Mesh(self.points, [("tetra", self.tets)]).write(source)
+                self.assertEqual(self.answer(self.converted(source)), expected)
+
+    def test_both_forms_of_tet(self):
+        expected = self.answer(gmsh(self.work / "own.msh", self.points, self.tets))
+        vertices = "".join("%r %r %r\n" % tuple(point) for point in self.points)
+        first, second = self.work / "a.tet", self.work / "b.tet"
+        first.write_text(f"tet {len(self.points)} {len(self.tets)}\n" + vertices + "".join("%d %d %d %d\n" % tuple(tet) for tet in self.tets))
+        second.write_text(f"{len(self.points)} vertices\n{len(self.tets)} tets\n" + vertices + "".join("4 %d %d %d %d\n" % tuple(tet) for tet in self.tets))
+        for path in (first, second):
+            with self.subTest(path.name):
+                self.assertEqual(self.answer(self.converted(path)), expected)
+        second.write_text(second.read_text() + "4 0 1 2\n")
+        self.bad(["b.tet", "words for"], "convert", second, "-o", self.work / "x.vtu")
+        second.write_text("vertices\n")
+        self.bad("is no .tet file", "convert", second, "-o", self.work / "x.vtu")
+
+    def test_bad_files_and_outputs(self):
+        out, source = self.work / "out.vtu", self.work / "mesh.inp"
+        meshio.Mesh(self.points, [("tetra", self.tets)]).write(source)
+        surface, broken = self.work / "surface.inp", self.work / "broken.inp"
+        meshio.Mesh(self.points, [("triangle", [tet[:3] for tet in self.tets])]).write(surface)
+        broken.write_text("*NODE\n1, 0, x, 0\n")
+        self.bad("there is no such file", "convert", self.work / "none.inp", "-o", out)
+        self.bad("no tetrahedra; export the volume", "convert", surface, "-o", out)
+        self.bad("broken.inp: meshio cannot read it", "convert", broken, "-o", out)
+        self.bad("name a file FILE.vtu", "convert", source, "-o", self.work / "out.vtk")
+        self.bad("cannot be written", "convert", source, "-o", self.work / "none/out.vtu")
+        self.assertFalse(out.exists())
+        before, linked = source.read_bytes(), self.work / "linked.vtu"
+        os.link(source, linked)
+        self.bad("linked.vtu", "convert", source, "-o", linked)
+        self.assertEqual(source.read_bytes(), before)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[__file__], verbosity=2)
