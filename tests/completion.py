@@ -43,7 +43,7 @@ class Completion(Case):
             words.append(word)
         words[0] = str(PROGRAM)
         line = str(PROGRAM) + line[len("tandem"):]
-        done = subprocess.run(["bash", "--norc", "-c", script, "bash", breaks, line, *words], capture_output=True, text=True, timeout=60)
+        done = subprocess.run(["bash", "--norc", "-c", script, "bash", breaks, line, *words], capture_output=True, text=True)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         return done.stdout.split()
 
@@ -122,13 +122,13 @@ class Completion(Case):
 
     @unittest.skipUnless(shutil.which("zsh"), "no zsh")
     def test_zsh(self):
-        subprocess.run(["zsh", "-n", ZSH], check=True, timeout=60)
+        subprocess.run(["zsh", "-n", ZSH], check=True)
         # compadd works only in a widget, so a function that prints its arguments replaces it.
         script = (f"compdef() {{ }}; _files() {{ print FILES }}; compadd() {{ print -l -- ${{@:#-*}} }}; source {ZSH}; words=(\"$@\"); "
                   "CURRENT=$#; PREFIX=$words[-1]; _tandem")
         for words, offered in ((["run", "--algorithm", "ti"], ["tiled"]), (["run", "--set", "group_siz"], ["group_size="]),
                                (["run", "--set", "slabs="], ["slabs=three", "slabs=all"]), (["run", "--out", ""], ["FILES"]), ([""], COMMANDS)):
-            done = subprocess.run(["zsh", "-f", "-c", script, "zsh", PROGRAM, *words], capture_output=True, text=True, timeout=60,
+            done = subprocess.run(["zsh", "-f", "-c", script, "zsh", PROGRAM, *words], capture_output=True, text=True,
                                   env={**os.environ, "LC_ALL": "C"})
             self.assertEqual((sorted(done.stdout.split()), done.stderr), (sorted(offered), ""))
 

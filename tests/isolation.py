@@ -33,10 +33,9 @@ def is_alive(process):
         return False
 
 
-def wait_for(what, seconds=20):
-    end = time.monotonic() + seconds
+def wait_for(what):
+    """Waits without a limit of its own: that of the whole test ends it."""
     while not (result := what()):
-        assert time.monotonic() < end, "nothing happened"
         time.sleep(0.002)
     return result
 
@@ -46,7 +45,7 @@ class Isolation(Case):
         return subprocess.Popen([str(PROGRAM), "run", *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
     def end(self, process):
-        out, errors = process.communicate(timeout=300)
+        out, errors = process.communicate()
         return process.returncode, out, errors.splitlines()
 
     def test_the_same_answers(self):
@@ -86,14 +85,13 @@ class Isolation(Case):
         self.assertFalse(is_alive(victim))
 
     def test_no_process_outlives_the_program(self):
-        # checked for 20 s
-        process = self.start("pile:bodies=300,frames=1", "--device", "host", "--algorithm", "chunked", "--isolate")
+        process = self.start("pile:bodies=300,frames=1", "--device", "host", "--algorithm", "chunked", "--isolate", "--noise", 1e-9, "--seconds", 100000)
         child = wait_for(lambda: children(process.pid))[0]
         time.sleep(1)  # it has read its task
         self.assertTrue(is_alive(child))
         process.kill()
         process.wait()
-        wait_for(lambda: not is_alive(child), 8)
+        wait_for(lambda: not is_alive(child))  # long before its cell has its samples
 
     def test_bad_use(self):
         self.bad("--timeout requires --isolate", "run", *CELLS, "--timeout", 3)

@@ -28,7 +28,7 @@ FILES = ["index.html", "verdicts.md", "claims.csv", *(f"table{i}.csv" for i in r
 
 
 def paper(*words, code=0):
-    done = subprocess.run([PROGRAM, "paper", *map(str, words)], capture_output=True, text=True, timeout=300)
+    done = subprocess.run([PROGRAM, "paper", *map(str, words)], capture_output=True, text=True)
     assert done.returncode == code, (done.returncode, done.stdout, done.stderr)
     return done
 
@@ -93,7 +93,7 @@ class Paper(unittest.TestCase):
     def test_measuring_needs_the_standard_library_only(self):
         step = self.number("chunks-morton")
         done = subprocess.run(["/usr/bin/python3", "-S", "-I", PROGRAM.parent / "libexec/tandem/paper", "-o", self.folder, "--device", "host", "--steps", step,
-                               "--measure-only"], capture_output=True, text=True, env={"TANDEM_PROGRAM": str(PROGRAM)}, timeout=300)
+                               "--measure-only"], capture_output=True, text=True, env={"TANDEM_PROGRAM": str(PROGRAM)})
         self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
         self.assertEqual([s["exit"] for s in self.steps()], [0])
 
@@ -132,11 +132,10 @@ class Paper(unittest.TestCase):
         step = self.number("sim-tower")
         running = subprocess.Popen([PROGRAM, "paper", *map(str, self.host), "--steps", step, "--measure-only"], stderr=subprocess.PIPE, text=True)
         recording = self.folder / "tower.frames.checkpoint"
-        until = time.monotonic() + 60
-        while not recording.exists() and time.monotonic() < until:
+        while not recording.exists() and running.poll() is None:
             time.sleep(0.05)
         running.send_signal(signal.SIGTERM)
-        self.assertIn("interrupted", running.communicate(timeout=60)[1])
+        self.assertIn("interrupted", running.communicate()[1])
         self.assertEqual(running.returncode, 3)
         paper(*self.host, "--steps", step, "--measure-only")
         self.assertEqual(self.steps()[-1]["exit"], 0)

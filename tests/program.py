@@ -37,7 +37,7 @@ def sets(settings):
     return [word for name, value in settings.items() for word in ("--set", f"{name}={value}")]
 
 
-def tandem(*arguments, environment=None, timeout=300, address_space=None):
+def tandem(*arguments, environment=None, address_space=None):
     """Returns (exit code, standard output, lines of standard error without PoCL's own). `address_space` limits the
     bytes of address space. A run takes one sample per cell unless the arguments choose otherwise: the default of
     ten rounds is for measurements."""
@@ -46,7 +46,7 @@ def tandem(*arguments, environment=None, timeout=300, address_space=None):
     if arguments[:1] == ("run",) and not is_plan and not {"--repeat", "--noise", "--seconds", "--profile"} & set(arguments):
         arguments = ("run", "--repeat", 1, *arguments[1:])
     limit = (lambda: resource.setrlimit(resource.RLIMIT_AS, (address_space, address_space))) if address_space else None
-    done = subprocess.run([str(PROGRAM), *map(str, arguments)], capture_output=True, text=True, timeout=timeout,
+    done = subprocess.run([str(PROGRAM), *map(str, arguments)], capture_output=True, text=True,
                           env={**os.environ, **(environment or {})}, preexec_fn=limit)
     lines = [line for line in done.stderr.splitlines() if line.strip() and not line.rstrip().endswith("generated.")]
     return done.returncode, done.stdout, lines

@@ -276,7 +276,7 @@ class Docs(unittest.TestCase):
     """scripts/docs, without doxygen, which only the reference itself needs."""
 
     def run_docs(self, *arguments, **environment):
-        done = subprocess.run([sys.executable, "-B", SOURCE / "scripts/docs", *map(str, arguments)], capture_output=True, text=True, timeout=60, check=False,
+        done = subprocess.run([sys.executable, "-B", SOURCE / "scripts/docs", *map(str, arguments)], capture_output=True, text=True, check=False,
                               env={**os.environ, **environment})
         return done.returncode, done.stdout, done.stderr
 

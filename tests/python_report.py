@@ -271,7 +271,7 @@ class Commands(Case):
         while not any(folder.iterdir()) and process.poll() is None:
             pass
         process.terminate()
-        _, errors = process.communicate(timeout=30)
+        _, errors = process.communicate()
         self.assertEqual((process.returncode, errors), (143, ""))
         self.assertEqual(list(folder.iterdir()), [])
         self.assertFalse((self.work / "ended.html").exists())

@@ -34,10 +34,9 @@ def ranks_of(launcher):
     return sorted(found)
 
 
-def wait_for(what, seconds=30):
-    end = time.monotonic() + seconds
+def wait_for(what):
+    """Waits without a limit of its own: that of the whole test ends it."""
     while not (result := what()):
-        assert time.monotonic() < end, "nothing happened"
         time.sleep(0.002)
     return result
 
@@ -134,7 +133,7 @@ class RankScenes(Case):
         for seed in range(20 if LONG else 3):
             ranks, out = (2, 4)[seed % 2], self.work / f"skewed{seed}.jsonl"
             skew = ["env", f"LD_PRELOAD={SKEWED_CLOCKS}", f"SKEW_SEED={seed}"]
-            status, text, errors = launch(job(*([skew] * ranks))(*common, "--out", out), timeout=60)
+            status, text, errors = launch(job(*([skew] * ranks))(*common, "--out", out))
             self.assertEqual((status, errors), (0, []), text)
             records = self.records(out)
             self.assertEqual(sorted(record["algorithm"] for record in records), ["chunked", "tiled"])
@@ -151,7 +150,7 @@ class RankScenes(Case):
                 out = self.work / f"auto{ranks}.jsonl"
                 skew = [f"LD_PRELOAD={SKEWED_CLOCKS}", f"SKEW_SEED={ranks}"] if SKEWED_CLOCKS else []
                 words = ["env", f"XDG_CACHE_HOME={self.work / 'choices'}", *skew]
-                done = subprocess.run(job(*([words] * ranks))(*cell, "--out", out), capture_output=True, text=True, timeout=120, env=ENVIRONMENT)
+                done = subprocess.run(job(*([words] * ranks))(*cell, "--out", out), capture_output=True, text=True, env=ENVIRONMENT)
                 choices = [line for line in done.stderr.splitlines() if line.startswith("auto: ")]
                 self.assertEqual((done.returncode, own_lines(done.stderr), len(choices)), (0, [], 1), done.stderr)
                 self.assertRegex(choices[0], expected)
@@ -162,14 +161,12 @@ class RankScenes(Case):
 
     def test_a_killed_rank_ends_the_job_and_keeps_records_whole(self):
         out = self.work / "killed.jsonl"
-        words = of(2)("run", PILE, "plates", *CELL, "--seconds", 60, "--noise", 1e-9, "--truth", "none", "--out", out)
+        words = of(2)("run", PILE, "plates", *CELL, "--seconds", 100000, "--noise", 1e-9, "--truth", "none", "--out", out)
         process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
         wait_for(lambda: len(ranks_of(process.pid)) == 2)
         wait_for(pathlib.Path(f"{out}.unfinished").exists)  # measuring has begun: mpirun knows all of its processes
-        begin = time.monotonic()
         os.kill(ranks_of(process.pid)[1], signal.SIGKILL)
-        text = process.communicate(timeout=10)[1]
-        self.assertLess(time.monotonic() - begin, 10)
+        text = process.communicate()[1]  # long before the cell has its samples
         self.assertNotEqual(process.returncode, 0)
         self.assertRegex(text, r"rank 1\b.*\bsignal 9")
         if out.exists():

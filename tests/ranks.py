@@ -43,10 +43,10 @@ def own_lines(text):
     return [line for line in text.splitlines() if line.startswith("tandem: ")]
 
 
-def launch(words, timeout=100):
+def launch(words):
     """A job that ends by itself; mpirun does not wait for other ranks when an exit code is not 0."""
     environment = {**ENVIRONMENT, "OMPI_MCA_odls_base_sigkill_timeout": "0"}
-    done = subprocess.run(words, capture_output=True, text=True, timeout=timeout, env=environment)
+    done = subprocess.run(words, capture_output=True, text=True, env=environment)
     return done.returncode, done.stdout, own_lines(done.stderr)
 
 

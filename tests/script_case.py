@@ -51,7 +51,7 @@ def script(name, *arguments, address_space=None):
         return called(loaded(name), *arguments)
     limit = (lambda: resource.setrlimit(resource.RLIMIT_AS, (address_space, address_space))) if address_space else None
     what = ["-B", "-m", MODULES[name]] if name in MODULES else [SOURCE / "scripts" / name]
-    done = subprocess.run(["/usr/bin/python3", *what, *map(str, arguments)], capture_output=True, text=True, timeout=500,
+    done = subprocess.run(["/usr/bin/python3", *what, *map(str, arguments)], capture_output=True, text=True,
                           preexec_fn=limit, cwd=SOURCE, env={**os.environ, "PYTHONPATH": str(SOURCE / "python")})
     return done.returncode, done.stdout, done.stderr.splitlines()
 

@@ -25,7 +25,7 @@ def tandem(*arguments, driver="driver", nvrtc=FOLDER / "nvrtc/libnvrtc.so", **va
             environment[name] = "/nonexistent"
     if nvrtc:
         environment["TANDEM_NVRTC"] = str(nvrtc)
-    done = subprocess.run([str(PROGRAM), *arguments], capture_output=True, text=True, env=environment, timeout=300)
+    done = subprocess.run([str(PROGRAM), *arguments], capture_output=True, text=True, env=environment)
     return done.returncode, done.stdout, done.stderr.splitlines()
 
 

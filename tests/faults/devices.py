@@ -16,13 +16,14 @@ import shutil
 import subprocess
 import unittest
 
+import pace
 from program import LONG, PROGRAM, Case, sets, tandem, tried
 
 SHORT = {"opencl": 4, "cuda": 5}  # runs per command and kind of failure in the short form
 FIRST = {"opencl": 1, "cuda": 7}  # first call of the short form: one that opens a device, which must not be tried twice
 MOST = 700  # maximum number of calls: later calls repeat those of a short frame
 LAST = 30  # the last calls close a device and cannot report errors
-HANGS = 100  # seconds until a run counts as hung
+HANGS = 300  # seconds of its own processor time until a run counts as hung
 SMALL = {name: 4096 for name in ("pair_capacity", "contact_capacity")}
 SCENE = "pile:bodies=2,frames=1"
 # CUDA calls whose failure the program may ignore: they free or restore something, or query optional values.
@@ -89,10 +90,8 @@ class Sweep(Case):
         environment |= {"SHIM_COUNT": str(folder / "count")} if call == 0 else {}
         running = subprocess.Popen([str(PROGRAM), *map(str, self.commands(folder)[command])], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=environment)
         try:
-            errors = running.communicate(timeout=HANGS)[1].splitlines()
-        except subprocess.TimeoutExpired:
-            running.kill()
-            running.communicate()
+            errors = pace.communicate(running, HANGS)[1].splitlines()
+        except pace.Hung:
             return folder, Outcome(0, [], True)
         # PoCL's compiler may print its own messages.
         return folder, Outcome(running.returncode, [line for line in errors if line.strip() and not line.rstrip().endswith("generated.")], False)

@@ -15,6 +15,7 @@ import subprocess
 import sys
 import unittest
 
+import pace
 from program import LONG, PROGRAM, SOURCE, Case, sets, tandem, tried
 
 PRELOAD = os.environ["PRELOAD"]
@@ -25,7 +26,7 @@ CELLS = ("plan", "check", "accuracy")  # commands with several cells
 LIBRARYS_WORDS = r"std::|::at\b|basic_string|bad_alloc|json\.exception|vector::"
 SHORT = 5  # runs per command and family in the short form, except malloc
 SHORT_MALLOC = 10
-HANGS = 60  # seconds until a run counts as hung
+HANGS = 60  # seconds of its own processor time until a run counts as hung
 OURS = PROGRAM.name
 # Message of glibc before it aborts because a thread's first object with a destructor finds no memory.
 NO_MEMORY_FOR_THREADS = "Fatal glibc error: failed to register TLS destructor: out of memory"
@@ -95,11 +96,9 @@ class Sweep(Case):
         running = subprocess.Popen([str(PROGRAM), *map(str, words)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=environment)
         hung = False
         try:
-            errors = running.communicate(timeout=HANGS)[1].splitlines()
-        except subprocess.TimeoutExpired:
+            errors = pace.communicate(running, HANGS)[1].splitlines()
+        except pace.Hung:
             hung, errors = True, []
-            running.kill()
-            running.communicate()
         text = log.read_text().splitlines() if log.exists() else []
         lines = [line.split() for line in text if line.startswith(family)]
         stack = [line for line in text if not line.startswith(family)]
