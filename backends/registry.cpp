@@ -13,19 +13,25 @@ namespace tandem {
 namespace {
 
 BackendReport find_host() {
-    BackendReport report{.name = "host", .devices = {}, .reason = {}};
+    BackendReport report{.name = "host", .devices = {}, .reason = {}, .drivers = {}};
     report.devices.push_back(host::make_device());
     return report;
 }
 
 BackendReport find_opencl() {
     auto found = opencl::discover();
-    return {.name = "opencl", .devices = std::move(found.devices), .reason = std::move(found.reason)};
+    return {.name = "opencl",
+            .devices = std::move(found.devices),
+            .reason = std::move(found.reason),
+            .drivers = std::move(found.drivers)};
 }
 
 BackendReport find_cuda() {
     auto found = cuda::discover();
-    return {.name = "cuda", .devices = std::move(found.devices), .reason = std::move(found.reason)};
+    return {.name = "cuda",
+            .devices = std::move(found.devices),
+            .reason = std::move(found.reason),
+            .drivers = {}};
 }
 
 struct Backend {
@@ -39,7 +45,7 @@ BackendReport guarded(const Backend& backend) {
     try {
         return backend.find();
     } catch (const std::exception& error) {
-        return {.name = std::string(backend.name), .devices = {}, .reason = error.what()};
+        return {.name = std::string(backend.name), .devices = {}, .reason = error.what(), .drivers = {}};
     }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "backends/device.h"
+#include "backends/driver_report.h"
 
 #include <span>
 
@@ -11,7 +12,8 @@ namespace tandem {
 struct BackendReport {
     std::string name;                             ///< "host", "opencl" or "cuda"
     std::vector<std::unique_ptr<Device>> devices; ///< in the backend's order; never null
-    std::string reason; ///< why a device or the whole backend is missing; empty if none is
+    std::string reason; ///< why a device, a driver or the whole backend is missing; empty if none is
+    std::vector<DriverReport> drivers; ///< of OpenCL, all that are registered; empty for other backends
 };
 
 /// Finds the devices of every backend. Never throws.

@@ -11,7 +11,7 @@ from program import SOURCE, Case, tandem
 
 class CommandLine(Case):
     def test_listings(self):
-        keys = {"devices": {"backend", "reason", "devices"}, "scenes": {"name", "models", "parameters", "bodies", "vertices", "tetrahedra"},
+        keys = {"devices": {"backend", "reason", "devices", "drivers"}, "scenes": {"name", "models", "parameters", "bodies", "vertices", "tetrahedra"},
                 "algorithms": {"name", "baseline", "summary", "parameters", "presets"}}
         for name, words in (("devices", ["host", "opencl:0"]), ("scenes", ["plates", "pile", "density", "glasses", "1729", "14793", "16140"]),
                             ("algorithms", ["chunked", "gproximity", "tiled", "embree", "unc2010", "seed_threshold"])):

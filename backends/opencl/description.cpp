@@ -3,12 +3,8 @@
 
 #include "backends/hardware.h"
 
-#include <algorithm>
 #include <array>
-#include <cstdlib>
-#include <filesystem>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <mutex>
 
 namespace tandem::opencl {
@@ -29,19 +25,6 @@ std::string hardware_id(cl_device_id device) {
     constexpr cl_device_info uuid = 0x106A; // CL_DEVICE_UUID_KHR
     if (!has_extension(device, "cl_khr_device_uuid")) return {};
     return uuid_text(device_value<std::array<unsigned char, 16>>(device, uuid));
-}
-
-/// The loader's folder and its vendor files, for the message that explains an empty list.
-std::string vendor_files() {
-    const auto* chosen = std::getenv("OCL_ICD_VENDORS");
-    const std::string folder = chosen != nullptr ? chosen : "/etc/OpenCL/vendors";
-    std::vector<std::string> names;
-    std::error_code ignored;
-    for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
-        names.push_back(entry.path().filename().string());
-    std::sort(names.begin(), names.end());
-    return fmt::format("{} has: {}", folder,
-                       names.empty() ? "nothing" : fmt::format("{}", fmt::join(names, ", ")));
 }
 
 std::vector<cl_device_id> devices_of(cl_platform_id platform) {
@@ -87,9 +70,9 @@ Listing list_devices() {
     cl_uint count = 0;
     const auto code = clGetPlatformIDs(0, nullptr, &count);
     if (code != CL_SUCCESS || count == 0) {
-        listing.reason = fmt::format("opencl: no platform (the loader returned {}; {}); install a "
-                                     "driver, for a CPU the package pocl-opencl-icd",
-                                     code, vendor_files());
+        listing.reason = fmt::format("opencl: no platform (the loader returned {}); install a driver, for a "
+                                     "CPU the package pocl-opencl-icd",
+                                     code);
         return listing;
     }
     std::vector<cl_platform_id> platforms(count);

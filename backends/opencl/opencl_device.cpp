@@ -3,6 +3,7 @@
 
 #include "backends/opencl/call_error.h"
 #include "backends/opencl/description.h"
+#include "backends/opencl/drivers.h"
 #include "backends/opencl/programs.h"
 #include "backends/opencl/queue.h"
 
@@ -212,17 +213,25 @@ std::uint64_t OpenclDevice::do_launch(Kernel::Impl& kernel, Grid grid, std::span
         });
 }
 
+/// Adds a sentence part to the reason why devices are missing.
+void add_part(std::string& reason, const std::string& part) {
+    reason += reason.empty() ? fmt::format("opencl: {}", part) : fmt::format("; {}", part);
+}
+
 } // namespace
 
 Found discover() {
     auto listing = list_devices();
     Found found;
+    found.drivers = registered_drivers();
     found.reason = std::move(listing.reason);
+    for (const auto& driver : found.drivers)
+        if (!driver.problem.empty()) add_part(found.reason, sentence(driver));
     for (auto* device : listing.devices) {
         try {
             found.devices.push_back(std::make_unique<OpenclDevice>(device, found.devices.size()));
         } catch (const DeviceError& error) {
-            found.reason = error.what();
+            add_part(found.reason, error.what());
         }
     }
     return found;

@@ -2,13 +2,15 @@
 #pragma once
 
 #include "backends/device.h"
+#include "backends/driver_report.h"
 
 namespace tandem::opencl {
 
-/// Every device of every platform, in the loader's order, or one sentence on why there is none.
+/// Every device of every platform, in the loader's order, and one sentence on what is missing.
 struct Found {
     std::vector<std::unique_ptr<Device>> devices; ///< those that could be opened; never null
-    std::string reason; ///< why there is none, or the error of the last that failed; empty without errors
+    std::vector<DriverReport> drivers;            ///< all that are registered
+    std::string reason; ///< why there is none, or which devices and drivers failed; empty without errors
 };
 
 Found discover();

@@ -65,6 +65,35 @@ void print_device(const DeviceInfo& info, const std::string& clock, const std::s
     if (const auto text = gpu_condition_text(now); !text.empty()) put("           now: {}\n", text);
 }
 
+/// The registered drivers of a backend, as [{file, library, platforms: [{name, devices}], problem}].
+Json drivers_json(const std::vector<DriverReport>& drivers) {
+    const auto or_null = [](const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); };
+    Json all = Json::array();
+    for (const auto& driver : drivers) {
+        Json platforms = Json::array();
+        for (const auto& platform : driver.platforms)
+            platforms.push_back({{"name", platform.name}, {"devices", platform.devices}});
+        all.push_back({{"file", or_null(driver.file)},
+                       {"library", or_null(driver.library)},
+                       {"platforms", platforms},
+                       {"problem", or_null(driver.problem)}});
+    }
+    return all;
+}
+
+/// One line for each driver that works; the backend's reason names the others.
+void print_drivers(const std::vector<DriverReport>& drivers) {
+    for (const auto& driver : drivers) {
+        if (!driver.problem.empty()) continue;
+        std::vector<std::string> platforms;
+        for (const auto& platform : driver.platforms)
+            platforms.push_back(fmt::format("platform '{}' with {} device{}", platform.name, platform.devices,
+                                            platform.devices == 1 ? "" : "s"));
+        put("{:<10} {} ({}): {}\n", "driver", driver.file.empty() ? "no file" : driver.file, driver.library,
+            fmt::join(platforms, ", "));
+    }
+}
+
 /// `tandem devices --measure`: the ceilings of the chosen devices.
 int measure_devices(const DevicesOptions& options) {
     const auto names = options.devices.empty() ? std::vector<std::string>{"all"} : options.devices;
@@ -177,6 +206,8 @@ int devices_command(const DevicesOptions& options) {
             entry["devices"].push_back(device_json(info, clock, same, now));
             if (!json) print_device(info, clock, same, now);
         }
+        entry["drivers"] = drivers_json(backend.drivers);
+        if (!json) print_drivers(backend.drivers);
         if (!json && !backend.reason.empty()) put_text(backend.reason + "\n");
         all.push_back(entry);
     }
