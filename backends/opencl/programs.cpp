@@ -3,10 +3,13 @@
 
 #include "backends/opencl/description.h"
 #include "backends/ptxas_log.h"
+#include "base/text_lines.h"
 
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
+#include <sstream>
+#include <string_view>
 
 namespace tandem::opencl {
 
@@ -17,7 +20,19 @@ std::string build_log(cl_program program, cl_device_id device) {
     clGetProgramBuildInfo(program, device, CL_PROGRAM_BUILD_LOG, 0, nullptr, &size);
     std::string log(size, '\0');
     clGetProgramBuildInfo(program, device, CL_PROGRAM_BUILD_LOG, size, log.data(), nullptr);
+    while (!log.empty() && log.back() == '\0') log.pop_back();
     return log;
+}
+
+/// The first line of a build log that has an error, else its first line with text.
+std::string decisive_line(const std::string& log) {
+    std::istringstream lines(log);
+    std::string first;
+    for (std::string line; std::getline(lines, line);) {
+        if (line.find("error") != std::string::npos) return visible(line);
+        if (first.empty() && line.find_first_not_of(" \t\r") != std::string::npos) first = line;
+    }
+    return first.empty() ? "the driver gives no build log" : visible(first);
 }
 
 /// A property of a kernel; zero when the driver does not report it.
@@ -55,13 +70,15 @@ cl_program Programs::build(Queue& queue, const KernelSource& source, const std::
     const std::size_t length = source.text.size();
     auto* program = clCreateProgramWithSource(context_, 1, &text, &length, &code);
     queue.check(code, "clCreateProgramWithSource", "compiling");
-    if (clBuildProgram(program, 1, &device_, options.c_str(), nullptr, nullptr) == CL_SUCCESS)
-        return built_[key] = program;
-    auto log = build_log(program, device_);
+    // A second time, because PoCL fails when processes write the same program into its cache at once: the one
+    // that removes the older file second finds none. The cache then has the program.
+    for (int attempt = 0; attempt < 2; ++attempt)
+        if (clBuildProgram(program, 1, &device_, options.c_str(), nullptr, nullptr) == CL_SUCCESS)
+            return built_[key] = program;
+    const auto log = build_log(program, device_);
     clReleaseProgram(program);
-    std::replace(log.begin(), log.end(), '\n', ' ');
-    throw DeviceError(
-        fmt::format("{}: {} does not compile with {}: {}", info_.id, source.name, options, log));
+    throw DeviceError(fmt::format("{}: {} does not compile with {}: {}", info_.id, source.name, options,
+                                  decisive_line(log)));
 }
 
 std::shared_ptr<OpenclKernel> Programs::compile(Queue& queue, const KernelSource& source,

@@ -59,6 +59,25 @@ TEST(OpenclFaults, ACompiledGroupSizeOverridesTheReportedMaximum) {
     device->finish();
 }
 
+// PoCL's cache makes one of several processes fail that build the same program at once.
+TEST(OpenclFaults, ABuildThatFailsOnceIsRepeated) {
+    const auto device = open_device();
+    const StageScope scope(*device, Stage::write);
+    const auto words = device->allocate(64, "words");
+    const std::array<Argument, 1> arguments{words};
+    opencl_shim_fail_builds(1);
+    const auto kernel = unit_test::compile(*device, "do_nothing", {{"GROUP_SIZE", "32"}});
+    device->launch(kernel, {1, 32}, arguments);
+    device->finish();
+    opencl_shim_fail_builds(2);
+    EXPECT_THAT(
+        unit_test::message_of([&] {
+            unit_test::compile(*device, "do_nothing", {{"GROUP_SIZE", "16"}});
+        }),
+        testing::AllOf(testing::HasSubstr("does not compile with"), testing::EndsWith("no build log")));
+    opencl_shim_fail_builds(0);
+}
+
 /// Every kind of command, with blocking and other uploads; returns the final words.
 std::vector<std::uint32_t> every_command(Device& device) {
     constexpr std::size_t count = std::size_t{1} << 18;

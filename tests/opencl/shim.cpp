@@ -39,6 +39,7 @@ struct State {
         std::getenv("SHIM_CODE") != nullptr ? std::atoi(std::getenv("SHIM_CODE")) : CL_OUT_OF_RESOURCES;
     unsigned long calls = 0;
     std::size_t reported_group_size = 0; ///< reported maximum work-group size of every kernel, if not 0
+    unsigned long failing_builds = 0;    ///< number of builds that still fail
     bool has_started = false;            ///< a command has been enqueued
     std::map<cl_command_queue, Queue> queues;
     Queue released; ///< in flight on released queues
@@ -122,6 +123,10 @@ void opencl_shim_fail(unsigned long call, int code) {
     state().calls = 0;
     state().has_started = true;
 }
+void opencl_shim_fail_builds(unsigned long count) {
+    state().failing_builds = count;
+    state().code = CL_BUILD_PROGRAM_FAILURE;
+}
 void opencl_shim_report_group_size(unsigned long group_size) { state().reported_group_size = group_size; }
 unsigned long opencl_shim_calls() { return state().calls; }
 
@@ -136,7 +141,11 @@ cl_program clCreateProgramWithSource(cl_context context, cl_uint count, const ch
 }
 cl_int clBuildProgram(cl_program program, cl_uint count, const cl_device_id* devices, const char* options,
                       void(CL_CALLBACK* notify)(cl_program, void*), void* data) {
-    if (fails()) return state().code;
+    if (fails()) state().failing_builds = 2; // the caller tries a second time
+    if (state().failing_builds > 0) {
+        --state().failing_builds;
+        return state().code;
+    }
     return REAL(clBuildProgram)(program, count, devices, options, notify, data);
 }
 cl_kernel clCreateKernel(cl_program program, const char* name, cl_int* code) {
