@@ -20,7 +20,7 @@ def entries(path):
     """By entry: numbers of the metadata of one assembly file."""
     text = path.read_text()
     _, _, metadata = text.partition("amdhsa.kernels:")
-    for block in re.split(r"\n  - \.args:", metadata)[1:]:
+    for block in re.split(r"\n  - (?=\.)", metadata)[1:]:  # a GPU with accumulation registers begins with their number
         values = dict(re.findall(r"^    \.(\w+): +(\S+)$", block, re.MULTILINE))
         yield values["name"], {name: int(values[name]) for name in (
             "vgpr_count", "sgpr_count", "group_segment_fixed_size", "vgpr_spill_count", "sgpr_spill_count", "private_segment_fixed_size")}
@@ -45,8 +45,11 @@ def main(page, paths):
     if not rows:
         sys.exit("kernel_resources: no file has metadata of a kernel; compile for an AMD GPU")
     columns = sorted(gpus, key=lambda gpu: (len(gpu), gpu))
+    for (kernel, name), cells in rows.items():
+        if missing := gpus - set(cells):
+            sys.exit(f"kernel_resources: {kernel}: {name} has no metadata for {', '.join(sorted(missing))}")
     lines = [HEAD, f"| kernel | {' | '.join(columns)} |", "|---|" + "---|" * len(columns)]
-    lines += [f"| `{kernel}`: `{name}` | {' | '.join(cells.get(gpu, '–') for gpu in columns)} |" for (kernel, name), cells in sorted(rows.items())]
+    lines += [f"| `{kernel}`: `{name}` | {' | '.join(cells[gpu] for gpu in columns)} |" for (kernel, name), cells in sorted(rows.items())]
     pathlib.Path(page).write_text("\n".join(lines) + "\n")
     print(f"kernel_resources: {len(rows)} entries for {', '.join(columns)} in {page}")
 

@@ -102,7 +102,7 @@ void Collider::open_devices(const ColliderOptions& options) {
         note_runtime();
     }
     if (options.stream) {
-        BackendReport cuda{.name = "cuda", .devices = {}, .reason = {}};
+        BackendReport cuda{.name = "cuda", .devices = {}, .reason = {}, .drivers = {}};
         cuda.devices.push_back(
             cuda::on_stream(cuda_number(options.device), reinterpret_cast<void*>(*options.stream)));
         devices_ = {cuda.devices.front().get()};
