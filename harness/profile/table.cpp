@@ -140,10 +140,10 @@ std::string profile_table(const Profile& profile, bool all) {
     std::vector<std::string> labels;
     for (std::size_t i = 0; i < rows.size(); ++i)
         labels.push_back(i < count ? rows[i].entry : fmt::format("{} below 1 %", rest.size()));
-    std::vector<Column> columns;
+    std::vector<TableColumn> columns;
     std::size_t before_rates = 4; // a sum has only the first four columns
     for (const auto& [head, text] : columns_of()) {
-        Column column{head, {}};
+        TableColumn column{head, {}};
         for (std::size_t i = 0; i < rows.size(); ++i)
             column.texts.push_back(i < count || before_rates > 0 ? text(rows[i]) : "");
         before_rates -= before_rates > 0 ? 1 : 0;

@@ -20,7 +20,7 @@ constexpr std::size_t gap = 2;
 /// Labels up to this width stand beside their row.
 std::size_t longest_label() { return std::max<std::size_t>(44, output_columns() * 2 / 5); }
 
-bool is_empty(const Column& column) {
+bool is_empty(const TableColumn& column) {
     return std::ranges::all_of(column.texts, [](const auto& text) { return text.empty(); });
 }
 
@@ -28,14 +28,14 @@ std::string right(const std::string& text, std::size_t width) {
     return std::string(width - std::min(width, width_of(text)), ' ') + text;
 }
 
-std::size_t width_of_column(const Column& column) {
+std::size_t width_of_column(const TableColumn& column) {
     std::size_t width = width_of(column.head);
     for (const auto& text : column.texts) width = std::max(width, width_of(text));
     return width;
 }
 
 std::string block(const std::vector<std::string>& labels, const std::string& head, std::size_t label_width,
-                  std::span<const Column* const> columns) {
+                  std::span<const TableColumn* const> columns) {
     std::string text = fmt::format("{:<{}}", head, label_width);
     for (const auto* column : columns)
         text += std::string(gap, ' ') + right(column->head, width_of_column(*column));
@@ -60,7 +60,7 @@ std::string markdown_cell(const std::string& text) {
 }
 
 std::string markdown_table(const std::vector<std::string>& labels, const std::string& head,
-                           const std::vector<Column>& columns) {
+                           const std::vector<TableColumn>& columns) {
     auto text = "|" + markdown_cell(head), rule = std::string("|---|");
     for (const auto& column : columns)
         if (!is_empty(column)) text += markdown_cell(column.head), rule += "---:|";
@@ -101,14 +101,14 @@ Unit unit_for(double least, double most) {
 } // namespace
 
 std::string in_columns(const std::vector<std::string>& labels, const std::string& head,
-                       const std::vector<Column>& columns, TableFormat format) {
+                       const std::vector<TableColumn>& columns, TableFormat format) {
     if (format == TableFormat::markdown) return markdown_table(labels, head, columns);
     const auto line_columns = output_columns(), longest = longest_label();
     std::size_t label_width = head.size();
     for (const auto& label : labels)
         if (label.size() <= longest) label_width = std::max(label_width, label.size());
     std::string text;
-    std::vector<const Column*> pending;
+    std::vector<const TableColumn*> pending;
     std::size_t width = label_width;
     for (const auto& column : columns) {
         if (is_empty(column)) continue;
@@ -137,7 +137,7 @@ std::vector<std::string> millisecond_texts(const std::vector<double>& ms) {
 std::string milliseconds(double ms) { return millisecond_texts({ms}).front(); }
 
 /// The least amount has four digits where its unit allows, so that all others have at least as many.
-Column amounts_column(const std::string& head, const std::vector<std::optional<double>>& amounts) {
+TableColumn amounts_column(const std::string& head, const std::vector<std::optional<double>>& amounts) {
     const auto [least, most] = range_of(amounts);
     const auto unit = unit_for(least, most);
     const bool is_whole = unit.scale == 1 && std::ranges::all_of(amounts, [](const auto& amount) {
@@ -146,7 +146,7 @@ Column amounts_column(const std::string& head, const std::vector<std::optional<d
     const int digits_before =
         least > 0 ? static_cast<int>(std::floor(std::log10(least / unit.scale))) + 1 : 1;
     const int decimals = is_whole ? 0 : std::clamp(4 - digits_before, 0, 4);
-    Column column{unit.name + head, {}};
+    TableColumn column{unit.name + head, {}};
     for (const auto& amount : amounts)
         column.texts.push_back(!amount     ? "-"
                                : most == 0 ? ""

@@ -81,15 +81,15 @@ std::uint64_t total_count(const std::vector<std::uint64_t>& values) {
 }
 
 template<class Text>
-Column column(std::string head, std::span<const Row> rows, const Text& text) {
-    Column result{std::move(head), {}};
+TableColumn column(std::string head, std::span<const Row> rows, const Text& text) {
+    TableColumn result{std::move(head), {}};
     for (const auto& row : rows) result.texts.push_back(text(row));
     return result;
 }
 
 /// A column of counts; omitted when all are 0.
 template<class Count>
-Column count_column(const std::string& head, std::span<const Row> rows, const Count& count) {
+TableColumn count_column(const std::string& head, std::span<const Row> rows, const Count& count) {
     std::vector<std::optional<double>> counts;
     for (const auto& row : rows) counts.emplace_back(static_cast<double>(count(row)));
     return amounts_column(head, counts);
@@ -97,7 +97,7 @@ Column count_column(const std::string& head, std::span<const Row> rows, const Co
 
 /// A column of milliseconds.
 template<class Ms>
-Column ms_column(std::string head, std::span<const Row> rows, const Ms& ms) {
+TableColumn ms_column(std::string head, std::span<const Row> rows, const Ms& ms) {
     std::vector<double> values;
     for (const auto& row : rows) values.push_back(ms(*row.measurement));
     return {std::move(head), millisecond_texts(values)};
@@ -114,7 +114,7 @@ std::string imbalance_text(const Measurement& m) {
 }
 
 /// Half the widths of the 95 % intervals; "?" for one round.
-Column interval_column(std::span<const Row> rows) {
+TableColumn interval_column(std::span<const Row> rows) {
     auto column = ms_column("95 %", rows, [](const Measurement& m) {
         if (m.round_count() < 2) return 0.0;
         const auto s = summarise(m.totals(), m.rounds());
@@ -138,7 +138,7 @@ std::set<std::size_t> leaders_of(const std::vector<Verdict>& verdicts) {
     return rows;
 }
 
-Column medians_column(std::span<const Row> rows, const std::vector<Verdict>& verdicts, bool colour) {
+TableColumn medians_column(std::span<const Row> rows, const std::vector<Verdict>& verdicts, bool colour) {
     auto column =
         ms_column("ms/frame", rows, [](const Measurement& m) { return per_frame_ms(m, median_ns(m)); });
     for (const auto row : leaders_of(verdicts))
@@ -147,9 +147,9 @@ Column medians_column(std::span<const Row> rows, const std::vector<Verdict>& ver
 }
 
 /// The columns that the user asked for.
-std::vector<Column> throughput_columns(std::span<const Row> rows, const Scene& scene,
-                                       const std::vector<std::string>& names) {
-    std::vector<Column> columns;
+std::vector<TableColumn> throughput_columns(std::span<const Row> rows, const Scene& scene,
+                                            const std::vector<std::string>& names) {
+    std::vector<TableColumn> columns;
     for (const auto& name : names) {
         const bool is_pairs = name == throughput_names[0];
         std::vector<std::optional<double>> amounts;
@@ -165,7 +165,7 @@ std::vector<Column> throughput_columns(std::span<const Row> rows, const Scene& s
 
 std::string totals_table(std::span<const Row> rows, const std::vector<std::string>& names,
                          const std::vector<Verdict>& verdicts, const Scene& scene, const TableStyle& style) {
-    std::vector<Column> columns{
+    std::vector<TableColumn> columns{
         medians_column(rows, verdicts, style.colour),
         interval_column(rows),
         column("rounds", rows, [](const Row& row) { return fmt::to_string(row.measurement->round_count()); }),
@@ -186,7 +186,7 @@ std::string totals_table(std::span<const Row> rows, const std::vector<std::strin
 
 std::string stages_table(std::span<const Row> rows, const std::vector<std::string>& names,
                          TableFormat format) {
-    std::vector<Column> columns;
+    std::vector<TableColumn> columns;
     for (const auto stage : all_stages()) {
         const auto ms = [stage](const Measurement& m) { return stage_ms(m, stage); };
         if (std::ranges::all_of(rows, [&](const Row& row) { return ms(*row.measurement) < 5e-6; })) continue;
@@ -230,7 +230,7 @@ std::vector<double> by_device(const Measurement& m, const Value& value) {
     return values;
 }
 
-Column device_counts(const std::string& head, const Measurement& m, std::uint64_t DeviceWork::*member) {
+TableColumn device_counts(const std::string& head, const Measurement& m, std::uint64_t DeviceWork::*member) {
     const auto counts = by_device(m, [&](std::size_t device) { return mean_over_frames(m, device, member); });
     return amounts_column(head, {counts.begin(), counts.end()});
 }
@@ -244,7 +244,7 @@ std::string devices_table(const Row& row, TableFormat format) {
     for (std::size_t i = 0; i < m.shared.front().size(); ++i)
         devices.push_back(row.cell->team != nullptr ? fmt::format("rank {}, {}", i, infos[i].id)
                                                     : infos[i].id);
-    std::vector<Column> columns{
+    std::vector<TableColumn> columns{
         device_counts("bodies", m, &DeviceWork::bodies),
         device_counts("body pairs", m, &DeviceWork::body_pairs),
         device_counts("pairs", m, &DeviceWork::pairs),
@@ -289,7 +289,7 @@ std::string ratios_to(const Row& base, std::span<const Row> rows, TableFormat fo
                       [&](const Row& row) { return quotient(value(*row.measurement), value(b)); });
     };
     const auto stage = [](Stage s) { return [s](const Measurement& m) { return stage_ms(m, s); }; };
-    const std::vector<Column> columns{
+    const std::vector<TableColumn> columns{
         column("total", compared, [&](const Row& row) { return ratio_text(*row.measurement, b); }),
         ratios("narrow", narrow_ms),
         ratios("kernels", kernels_ms),
