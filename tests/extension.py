@@ -33,7 +33,7 @@ class Extension(Case):
         status, text, errors = tandem("run", SCENE, "--algorithm", "chunked,lbvh", "--device", "host", "--repeat", 1, "--out", out)
         self.assertEqual((status, errors), (0, []), text)
         self.assertEqual(text.count(": right: "), 2, text)
-        self.assertRegex(text, r"(?m)^lbvh resident +\d")
+        self.assertRegex(text, r"(?m)^lbvh resident on host +\d")
         chunked, lbvh = self.records(out)
         self.assertEqual([record["algorithm"] for record in (chunked, lbvh)], ["chunked", "lbvh"])
         for name in ("digest", "contact_digest"):

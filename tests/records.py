@@ -37,7 +37,7 @@ NULLABLE = {"chosen", "failure", "agreement", "commit", "hardware", "device_span
             "hausdorff", "volume_relative"}
 OF_CONDITION = ("cores", "quota_cores", "own_cores", "other_cores", "governor", "mhz", "throttled_periods", "pressure_percent")
 OF_SAMPLING = ("cells", "seed", "repeat", "noise", "seconds", "spent_seconds", "converged", "drift")
-NULLABLE_PATHS = {("environment", "processor"), ("environment", "sources"), ("conditions",), ("ranks",), ("partition",),
+NULLABLE_PATHS = {("scene", "reading", "weld"), ("environment", "processor"), ("environment", "sources"), ("conditions",), ("ranks",), ("partition",),
                   *(("conditions", when, "processor", name) for when in ("before", "after") for name in OF_CONDITION),
                   *(("conditions", when, "gpus", 0) for when in ("before", "after")), *(("sampling", name) for name in OF_SAMPLING),
                   ("error", "truth"), ("error", "truth", "contacts"), ("error", "truth", "drift"),
@@ -45,7 +45,7 @@ NULLABLE_PATHS = {("environment", "processor"), ("environment", "sources"), ("co
 # Fields that records of earlier versions lack.
 SINCE = {"stack_bytes", "chosen", "truth", "inputs", "volume_relative", "no_volume"}
 SINCE_PATHS = {("devices", 0, "clock"), ("work", "digest"), ("work", "contact_digest"), ("work", "submissions"), ("work", "rebuilds"), ("work", "dropped_body_pairs"), ("work", "dropped_candidate_pairs"), ("work", "walked_tetrahedra"), ("work", "without_boundary"), ("sampling", "continued"),
-               ("host_work",), ("ranks",), ("partition",)}
+               ("host_work",), ("ranks",), ("partition",), ("scene", "reading")}
 
 
 class Records(Case):
@@ -295,7 +295,7 @@ class Records(Case):
             self.check_row(row, record)
         # Settings of the other algorithm are empty.
         self.assertEqual({row["set_most_seeds"] for row in rows if row["algorithm"] == "chunked"}, {""})
-        self.assertEqual((rows[4]["status"], rows[4]["failure"], rows[4]["ms"]), ("failed", failed["failure"], ""))
+        self.assertEqual((rows[4]["status"], rows[4]["failure"], rows[4]["ms"]), ("failed", failed["failure"].replace("\n", "\\n"), ""))
         with open(out, "a") as file:
             file.write(json.dumps(records[0])[:100])
         status, text, errors = tandem("export", out, "--csv")

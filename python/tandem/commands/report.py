@@ -76,10 +76,8 @@ def _write(options, program):
     written = write_page(options.output, page)
     for note in data.notes:
         warn(f"tandem: {note}")
-    sentences = "".join(f"{one}
-" for one in data.sentences) if options.sentences else ""
-    return f"{sentences}{options.output}: {_contents(data.cells, records, len(options.files))}{scene}, {written / 1e6:.1f} MB
-"
+    sentences = "".join(f"{one}\n" for one in data.sentences) if options.sentences else ""
+    return f"{sentences}{options.output}: {_contents(data.cells, records, len(options.files))}{scene}, {written / 1e6:.1f} MB\n"
 
 
 def _make(options, program):
