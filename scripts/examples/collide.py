@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 """collide.py [MESH MESH] [--shift X,Y,Z] [--device D] [-o PICTURE]: collides two meshes and draws their contacts.
 
-Reads meshes with tetrahedra in any format of meshio, or by tandem's own readers if meshio is not installed. Without meshes it uses two
-jacks of tandem's pile. Writes collide.png unless -o names another picture. Exit code 2: bad use or bad input."""
+Reads meshes with tetrahedra in the formats of tandem.read_mesh; `tandem convert` brings others to one. Without meshes it uses two jacks of
+tandem's pile. Writes collide.png unless -o names another picture. Exit code 2: bad use or bad input."""
 import argparse
 import sys
 
@@ -22,18 +22,6 @@ except ImportError as error:
     fail(f"{error}; run `pip install .` in tandem's checkout")
 matplotlib.use("agg")
 from matplotlib import pyplot  # noqa: E402 (after the choice of the backend)
-
-
-def read(path):
-    """(vertices, tetrahedra) of a file, or a tandem.Mesh."""
-    try:
-        import meshio
-    except ImportError:
-        return tandem.read_mesh(path)  # Gmsh, Medit, TetGen, VTK
-    mesh = meshio.read(path)
-    if "tetra" not in mesh.cells_dict:
-        raise ValueError(f"{path}: has no tetrahedra; give a volume mesh")
-    return mesh.points, mesh.cells_dict["tetra"]
 
 
 def draw(contacts, picture):
@@ -57,7 +45,7 @@ def main():
     if len(given.mesh) not in (0, 2):
         fail("give two meshes, or none")
     try:
-        meshes = [read(path) for path in given.mesh] or tandem.make_scene("pile:bodies=2").meshes[:1] * 2
+        meshes = [tandem.read_mesh(path) for path in given.mesh] or tandem.make_scene("pile:bodies=2").meshes[:1] * 2
         meshes = [tandem.make_mesh(*mesh) if isinstance(mesh, tuple) else mesh for mesh in meshes]
         shift = [float(text) for text in given.shift.split(",")] if given.shift else [0.2 * numpy.ptp(meshes[0].vertices[:, 0]), 0, 0]
         collider = tandem.Collider(meshes, algorithm="tiled", device=given.device)

@@ -154,13 +154,14 @@ TEST_P(Interior, IsWalkedWhereItMakesContacts) {
     }
 }
 
-/// Two tetrahedra with the same corners share all faces. Such a mesh is walked whole, and makes no contacts.
+/// A tetrahedron, and four that fill it from a vertex inside, share all faces: the boundary of a simplex of
+/// four dimensions. Such a mesh is walked whole, and makes no contacts.
 TEST_P(Interior, IsWalkedInAMeshWithoutBoundary) {
     auto scene = boxes_scene(3, 4);
     auto& mesh = scene.meshes[0];
-    mesh.tetrahedra.resize(1);
-    mesh.tetrahedra.push_back(mesh.tetrahedra[0]);
-    complete_mesh(mesh, "twins");
+    mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.2, 0.2, 0.2}};
+    mesh.tetrahedra = {{0, 1, 2, 3}, {4, 1, 2, 3}, {0, 4, 2, 3}, {0, 1, 4, 3}, {0, 1, 2, 4}};
+    complete_mesh(mesh, "closed");
     ASSERT_THAT(mesh.boundary, testing::Each(0));
     for (const auto* traversal : algorithms()) {
         const auto result =
