@@ -25,7 +25,7 @@ set(public_headers
   algorithms/parameters/parameter.h algorithms/parameters/choices.h algorithms/parameters/contact_rules.clh
   algorithms/parameters/table.h
   algorithms/bounds/geometry.h algorithms/bodies/range.h algorithms/bodies/check_input.h scenes/scene.h scenes/dynamics.h
-  scenes/contact.h scenes/simulate/simulation.h scenes/mesh.h scenes/builtin.h base/error.h)
+  scenes/contact.h scenes/simulate/simulation.h scenes/mesh.h scenes/mesh_reading.h scenes/builtin.h base/error.h)
 if(TANDEM_HAS_MPI)
   list(APPEND public_headers backends/mpi/mpi_ranks.h)
 endif()

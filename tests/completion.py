@@ -100,7 +100,7 @@ class Completion(Case):
         self.assertEqual(asked("simulate", "--dynamics", "method="), ["method=gauss_seidel", "method=jacobi"])
         for command in COMMANDS:
             self.assertLessEqual(set(asked(command, "--")), set(tandem(command, "--help")[1].replace(",", " ").split()) | {"--no-check", "--no-count", "--version"})
-        for option, values in (("--truth", ["none", "pairs", "contacts"]), ("--degenerate", ["flat", "skip", "reject"]), ("--duplicates", ["keep", "merge", "reject"])):
+        for option, values in (("--truth", ["none", "pairs", "contacts"]), ("--degenerate", ["flat", "skip", "reject"]), ("--duplicates", ["merge", "keep", "reject"])):
             self.assertEqual(asked("run", option, ""), values)
         self.assertEqual(asked("compare", "--format", "m"), ["markdown"])
         self.assertEqual(asked("run", "--format", ""), ["text", "markdown"])

@@ -104,6 +104,7 @@ Mesh beyond_all_numbers() {
     return mesh;
 }
 
+/// Duplicates are in no tree.
 TEST(TreeOrders, ArePermutationsOfAnyMesh) {
     auto meshes = hard_meshes();
     meshes.push_back(beyond_all_numbers());
@@ -113,7 +114,9 @@ TEST(TreeOrders, ArePermutationsOfAnyMesh) {
             auto order = ordered(mesh, {builder}).ids;
             EXPECT_EQ(order, ordered(mesh, {builder}).ids); // and the same order every time
             std::ranges::sort(order);
-            EXPECT_EQ(order, counted(mesh.tetrahedra.size())) << static_cast<int>(builder) << mesh.name;
+            auto expected = counted(mesh.tetrahedra.size());
+            std::erase_if(expected, [&](auto id) { return std::ranges::binary_search(mesh.merged, id); });
+            EXPECT_EQ(order, expected) << static_cast<int>(builder) << mesh.name;
         }
 }
 

@@ -30,12 +30,15 @@ def _tet(path):
         points, cells = (int(words[1]), int(words[2])) if counted else (int(words[0]), int(words[2]))
         start, width = (3, 4) if counted else (4, 5)
         end = start + 3 * points
-        if len(words) != end + width * cells:
-            raise BadUse(f"{path}: {len(words)} words for {points} vertices and {cells} tetrahedra; export the file again")
+        count = end + width * cells
         rows = [words[end + width * i:end + width * (i + 1)][width - 4:] for i in range(cells)]
-        return [[float(word) for word in words[start + 3 * i:start + 3 * i + 3]] for i in range(points)], [[int(word) for word in row] for row in rows]
+        positions = [[float(word) for word in words[start + 3 * i:start + 3 * i + 3]] for i in range(points)]
+        corners = [[int(word) for word in row] for row in rows]
     except (IndexError, ValueError):
         raise BadUse(f"{path}: is no .tet file; it begins with 'tet V T' or 'V vertices T tets'") from None
+    if len(words) != count:
+        raise BadUse(f"{path}: {len(words)} words for {points} vertices and {cells} tetrahedra; export the file again")
+    return positions, corners
 
 
 def _by_meshio(path):
