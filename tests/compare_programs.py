@@ -110,7 +110,7 @@ class ComparePrograms(Case):
         time.sleep(0.2)  # until the program has set its handler
         process.send_signal(signal.SIGINT)
         out, errors = process.communicate()
-        self.assertEqual((process.returncode, errors), (3, "tandem: interrupted in turn 2 of 10\n"), out)
+        self.assertEqual((process.returncode, errors), (130, "tandem: interrupted in turn 2 of 10\n"), out)
         self.assertIn("compared by sessions: 1 of old and 2 of new", out)
         self.assertEqual(sorted(path.name for path in folder.iterdir()), ["new-1.jsonl", "new-2.jsonl", "old-1.jsonl"])
 

@@ -136,7 +136,7 @@ class Paper(unittest.TestCase):
             time.sleep(0.05)
         running.send_signal(signal.SIGTERM)
         self.assertIn("interrupted", running.communicate()[1])
-        self.assertEqual(running.returncode, 3)
+        self.assertEqual(running.returncode, 143)
         paper(*self.host, "--steps", step, "--measure-only")
         self.assertEqual(self.steps()[-1]["exit"], 0)
         lines = [json.loads(line) for line in (self.folder / "records/sim-tower.jsonl").read_text().splitlines()]

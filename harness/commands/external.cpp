@@ -6,6 +6,7 @@
 #include "base/standard_streams.h"
 #include "base/error.h"
 
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fmt/format.h>
@@ -41,7 +42,10 @@ int run_external(const std::string& name, const std::vector<std::string>& words)
     for (const char* python : {"/usr/bin/python3", "python3"}) {
         std::vector<std::string> line{python, path};
         line.insert(line.end(), words.begin(), words.end());
-        if (const int code = run_program(line, streams); code != not_found) return code;
+        const int code = run_program(line, streams);
+        // run_program() ends the command by SIGTERM after any signal.
+        if (code == 128 + SIGTERM && Interrupt::asked()) return Interrupt::exit_code();
+        if (code != not_found) return code;
     }
     throw InputError(fmt::format("tandem {} needs python3; install it", name));
 }

@@ -66,7 +66,7 @@ def _compared_programs(options):
             raise
         text, code = "", 0 if ended.failure else print_error(problem, 1)
     if ended.failure:
-        return text, print_error(ended.failure, FAILED)
+        return text, print_error(ended.failure, 128 + ended.signal if ended.signal else FAILED)
     return text, max(code, int(ended.wrong))
 
 

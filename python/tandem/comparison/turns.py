@@ -22,10 +22,11 @@ ROOT = pathlib.Path(__file__).parents[3]  # of the source tree, if the package i
 
 @dataclasses.dataclass
 class Ended:
-    """How the turns ended. `turns`: number of turns that were started. `failure`: why they stopped early, or empty. `wrong`: a program found
-    a wrong answer."""
+    """How the turns ended. `turns`: number of turns that were started. `failure`: why they stopped early, or empty. `signal`: the number of
+    the signal that stopped them, or 0. `wrong`: a program found a wrong answer."""
     turns: int = 0
     failure: str = ""
+    signal: int = 0
     wrong: bool = False
 
 
@@ -34,7 +35,7 @@ class _Signals:
     writes its records. A second Ctrl-C ends this process."""
 
     def __init__(self):
-        self.asked, self.process = False, None
+        self.asked, self.process = 0, None
 
     def __enter__(self):
         self._before = {number: signal.signal(number, self._handle) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
@@ -50,7 +51,7 @@ class _Signals:
             signal.signal(signal.SIGINT, signal.SIG_DFL)
         if not self.asked and self.process:
             self.process.send_signal(signal.SIGTERM)
-        self.asked = True
+        self.asked = self.asked or number
 
 
 def _checked_program(name, side):
@@ -99,7 +100,7 @@ class Turns:
                     if not self._ended.failure:
                         self._run(signals, side, turn)
                     if signals.asked:
-                        self._ended.failure = f"interrupted in turn {turn} of {count}"
+                        self._ended.failure, self._ended.signal = f"interrupted in turn {turn} of {count}", signals.asked
                 if self._ended.failure:
                     break
         return self._ended

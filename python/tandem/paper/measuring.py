@@ -183,7 +183,7 @@ class MeasuredFolder:
 
     def __init__(self, path, size, device, program):
         self.path, self.size, self.device, self.program = pathlib.Path(path), size, device, program
-        self.running, self.interrupted = None, False
+        self.running, self.interrupted = None, 0
         for part in ("records", "plans", "logs"):
             try:
                 (self.path / part).mkdir(parents=True, exist_ok=True)
@@ -246,9 +246,9 @@ class MeasuredFolder:
             self.done.add(step.key)
         return code
 
-    def interrupt(self, *_):
+    def interrupt(self, number, _):
         """Signal handler: ends the running step, and starts no further one."""
-        self.interrupted = True
+        self.interrupted = number
         if self.running is not None:
             self.running.send_signal(signal.SIGTERM)
 
@@ -268,7 +268,8 @@ def list_steps(folder, steps):
 
 
 def run_steps(folder, steps, numbers):
-    """Runs those of these steps that are not done; numbers: their indices. Returns the worst exit code. Later steps run also if one fails."""
+    """Runs those of these steps that are not done; numbers: their indices. Later steps run also if one fails. Returns the worst exit code, or
+    128 plus the signal that ended them."""
     print_message = lambda text: print(text, file=sys.stderr, flush=True)
     environment = environment_of(folder.program)
     left = sum(steps[i].seconds for i in numbers if not folder.is_done(steps[i]))
@@ -292,5 +293,5 @@ def run_steps(folder, steps, numbers):
             worst = max(worst, 1 if code == 1 else 3)
     if folder.interrupted:
         print_message("tandem: interrupted; the same command continues")
-        worst = max(worst, 3)
+        return 128 + folder.interrupted
     return worst
