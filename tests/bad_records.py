@@ -40,8 +40,9 @@ class BadRecords(unittest.TestCase):
         text = (H200 / "seeds.jsonl").read_text().splitlines()[0]
         good = json.loads(text)
         for place, value in ((("stages", "read", "waits"), 0.5), (("work", "body_pairs", 0), "x"), (("total_ns", "rounds", 1), 0.5), (("environment", "dirty"), {}),
-                             (("kernels", 0, "registers"), {}), (("stages", "write", "bytes"), [1])):
-            record = json.loads(text) | {"key": "another"}
+                             (("kernels", 0, "registers"), {}), (("stages", "write", "bytes"), [1]), (("environment",), 3), (("sampling",), [1]), (("devices",), 5)):
+            # With the key of the first line, records are also compared with it.
+            record = json.loads(text) | ({} if len(place) == 1 else {"key": "another"})
             part = record
             for name in place[:-1]:
                 part = part[name]

@@ -16,7 +16,8 @@ if sys.argv[1] == "check":
     if {end}:
         sys.exit("tandem: no memory")
     out = pathlib.Path(sys.argv[sys.argv.index("--out") + 1])
-    out.write_text(out.read_text().replace('"missing":0', '"missing":7'))
+    out.write_text(out.read_text().replace('"missing":0', '"missing":7').replace('"status":"ok"', '"status":"wrong"'))
+    sys.exit(1)
 sys.exit(done.returncode)
 """
 

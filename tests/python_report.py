@@ -18,7 +18,7 @@ import unittest.mock
 from program import LONG, PROGRAM, SOURCE, Case, tandem
 
 sys.path.insert(0, str(SOURCE / "python"))
-from tandem import lines
+from tandem import files, lines
 from tandem.errors import BadUse, OutputError
 from tandem.files import replace_whole
 from tandem.report import assembly, libraries, scene
@@ -277,18 +277,18 @@ class Commands(Case):
         self.assertFalse((self.work / "ended.html").exists())
 
     def test_a_signal_before_the_export_starts(self):
-        late = []
-        self.addCleanup(signal.signal, signal.SIGTERM, signal.signal(signal.SIGTERM, lambda *_: late.append("a handler of the test")))
-        made = []
+        for number in (signal.SIGTERM, signal.SIGINT):
+            late, made = [], []
+            self.addCleanup(signal.signal, number, signal.signal(number, lambda *_, late=late: late.append("a handler of the test")))
 
-        def signalled(**options):
-            made.append(tempfile.TemporaryDirectory(**options))
-            os.kill(os.getpid(), signal.SIGTERM)
-            return made[-1]
+            def signalled(made=made, number=number, **options):
+                made.append(tempfile.TemporaryDirectory(**options))
+                os.kill(os.getpid(), number)
+                return made[-1]
 
-        with unittest.mock.patch.object(scene, "tempfile", unittest.mock.Mock(TemporaryDirectory=signalled)), self.assertRaises(scene.ExportEnded) as ended:
-            scene.shown_scene(PROGRAM, ["plates", "--frames=0"])
-        self.assertEqual((ended.exception.code, late, pathlib.Path(made[0].name).exists()), (143, [], False))
+            with unittest.mock.patch.object(files, "tempfile", unittest.mock.Mock(TemporaryDirectory=signalled)), self.assertRaises(scene.ExportEnded) as ended:
+                scene.shown_scene(PROGRAM, ["plates", "--frames=0"])
+            self.assertEqual((ended.exception.code, late, pathlib.Path(made[0].name).exists()), (128 + number, [], False))
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ from tandem.report.data import data_of
 from tandem.report.groups import groups_of
 from tandem.report.reading import Records
 from tandem.report.sentences import group_sentences, summary_sentences
-from tandem.report.shown_cells import FIELDS, ShownCell
+from tandem.report.shown_cells import FIELDS, STAGES, ShownCell
 from tandem.report.sweeps import sweeps_of
 
 ONE_MS = [1.0, 1.01, 0.99, 1.0, 1.02, 0.98, 1.0, 1.01, 0.99, 1.0]
@@ -32,7 +32,7 @@ def cell_of(algorithm, rounds, k="18", **changes):
                             pairs=None, contacts=None, commit="", processor="", dirty=False)
     for name, value in changes.items():
         setattr(recorded, name, value)
-    return ShownCell(recorded, "pile:bodies=3", "pile", "1", row=[f"text {algorithm}"] * (len(FIELDS) - 1))
+    return ShownCell(recorded, "pile:bodies=3", "pile", "1", row=[{} if name == "stages" else f"text {algorithm}" for name in list(FIELDS)[:-1]])
 
 
 def groups_and_sentences(cells):
@@ -62,7 +62,7 @@ class Sentences(unittest.TestCase):
         def named(first, second, third=None):
             cells = [cell_of("a", ONE_MS), cell_of("b", TWO_MS)] + ([cell_of("c", [ms + 0.001 for ms in ONE_MS])] if third else [])
             for cell, stages in zip(cells, (first, second, third)):
-                cell.stages = stages
+                cell.row[STAGES] = {name: [ms, 0.0, 1, 0] for name, ms in (stages or {}).items()}
             return groups_and_sentences(cells)[1].partition("[")[2].partition("]. ")[2]
         self.assertEqual(named({"traverse": 0.5, "contact": 0.4}, {"traverse": 1.3, "contact": 0.6}),
                          "Most of the difference from b is in stage traverse: 0.500 ms a frame instead of 1.300.")

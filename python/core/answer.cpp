@@ -68,9 +68,12 @@ std::vector<Pair> Answer::meeting() const {
         throw InputError("meeting() needs the frame, which was in memory of the device; give its arrays in "
                          "host memory");
     const auto found = pairs();
-    const auto lock = collider_->lock();
+    const auto geometry = [&] {
+        const auto lock = collider_->lock();
+        return geometry_of(collider_->settings());
+    }();
     const auto& [x, y, z] = result_.origin;
-    return meeting_of(collider_->scene(), *frame_, geometry_of(collider_->settings()), {x, y, z}, found);
+    return meeting_of(collider_->scene(), *frame_, geometry, {x, y, z}, found);
 }
 
 const Answer::OnDevice& Answer::on_device() const {

@@ -144,9 +144,14 @@ void Collider::begin_at(const Input& input) {
     if (first_ || origin_ != Origin::automatic) return;
     first_ = input.on_device ? downloaded(*devices_.front(), scene_, device_frames(input).frame)
                              : host_frames(input).frame;
-    if (session_ && session_->origin() != origin_of(scene_, origin_))
+    if (!session_ || session_->origin() == origin_of(scene_, origin_)) return;
+    try {
         session_ = tandem::algorithm(algorithm_)
                        .prepare(devices_, scene_, prepared_ ? *prepared_ : session_->settings());
+    } catch (...) {
+        first_.reset(); // the next run tries again, instead of keeping another origin
+        throw;
+    }
 }
 
 template<class Frames>
@@ -197,17 +202,17 @@ void Collider::reset() {
 }
 
 std::string Collider::algorithm() {
-    const auto own = lock();
+    const std::lock_guard own(mutex_);
     return algorithm_;
 }
 
 SettingTexts Collider::setting_texts() {
-    const auto own = lock();
+    const std::lock_guard own(mutex_);
     return session_ ? session_->settings().texts() : SettingTexts{};
 }
 
 std::vector<std::uintptr_t> Collider::addresses() {
-    const auto own = lock();
+    const std::lock_guard own(mutex_);
     return device_input_ ? device_input_->addresses() : std::vector<std::uintptr_t>{};
 }
 

@@ -12,10 +12,6 @@ namespace {
 constexpr std::size_t pose_numbers = 7, coordinates = 3;
 constexpr std::size_t max_adopted = 64;
 
-} // namespace
-
-namespace {
-
 std::vector<double> downloaded_numbers(Device& device, const DeviceRows& rows, std::size_t count) {
     std::vector<double> numbers(count);
     if (rows.precision == Precision::fp64) {

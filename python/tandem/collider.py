@@ -213,9 +213,9 @@ class Collider:
         """run(...).contacts()."""
         return self.run(poses, vertices, next_poses=next_poses, next_vertices=next_vertices).contacts()
 
-    def meeting(self, poses: Any = None, vertices: Any = None) -> numpy.ndarray:
-        """run(...).meeting(): (n, 4) int32, sorted."""
-        return self.run(poses, vertices).meeting()
+    def meeting(self, poses: Any = None, vertices: Any = None, *, next_poses: Any = None, next_vertices: Any = None) -> numpy.ndarray:
+        """run(...).meeting(): (n, 4) int32, sorted. With motion="linear" too, these are the pairs that meet in the frame itself."""
+        return self.run(poses, vertices, next_poses=next_poses, next_vertices=next_vertices).meeting()
 
     def count(self, poses: Any = None, vertices: Any = None, *, next_poses: Any = None, next_vertices: Any = None) -> int:
         """run(...).count: the number of candidate pairs. With output="count" the pairs are not stored."""

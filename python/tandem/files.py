@@ -5,6 +5,7 @@ import fcntl
 import io
 import os
 import stat
+import tempfile
 
 from .errors import BadUse, OutputError
 from .text_lines import visible
@@ -38,7 +39,7 @@ def _check_existing(path, inputs):
 
 def check_output(path, inputs=(), suffix=""):
     """Call this before any work. Raises BadUse for an output that is one of the inputs or a file of records, compared by device and inode, and
-    for one that cannot be written, such as a folder. `suffix`: that of a file which is made beside it."""
+    for one that cannot be written, such as a folder. `suffix`: that of a file which is made beside it and then renamed; the output has to be a regular file."""
     path = os.fspath(path)
     for name in (path + suffix, path):
         try:
@@ -48,14 +49,23 @@ def check_output(path, inputs=(), suffix=""):
         except OSError as problem:
             raise BadUse(f"{path}: cannot be written ({problem.strerror}); choose another file") from None
     if stat.S_ISREG(mode):
-        return _check_existing(path, inputs)
+        _check_existing(path, inputs)
+        return
     if stat.S_ISDIR(mode):
         raise BadUse(f"{path}: is a folder; name a file for the output")
+    if suffix and mode:
+        raise BadUse(f"{path}: is not a regular file; choose another for the output")
     folder = os.path.dirname(path) or "."
     if mode == 0 and not os.access(folder, os.W_OK | os.X_OK):
         raise BadUse(f"{path}: cannot be written ({os.strerror(errno.EACCES if os.path.exists(folder) else errno.ENOENT)}); choose another file")
-    return None
 
+
+def temporary_folder():
+    """A tempfile.TemporaryDirectory. Raises BadUse if there is no place for one."""
+    try:
+        return tempfile.TemporaryDirectory(prefix="tandem-")
+    except OSError as problem:
+        raise BadUse(f"no folder for temporary files ({problem.strerror}); set TMPDIR to one") from None
 
 
 def _sync_folder(path):

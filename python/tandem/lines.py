@@ -132,11 +132,10 @@ def is_partial(record):
     return (record.get("sampling") or {}).get("interrupted") is True
 
 
-def _measured_again(early, later):
-    """Whether the later of two records of a key measures the interrupted cell of the early one again, by the same program on the same devices."""
-    def program(record):
-        return (record.get("environment") or {}).get("sources"), [device["id"] for device in record["devices"]]
-    return is_partial(early) and later.get("status") != "failed" and program(early) == program(later)
+def program_of(record):
+    """What identifies the program that made a record: commit, whether its tree had changes, and digest of its sources."""
+    environment = record.get("environment") or {}
+    return environment.get("commit") or "", environment.get("dirty"), environment.get("sources") or ""
 
 
 def run_of(record):
@@ -147,7 +146,8 @@ def run_of(record):
 
 def merged(paths, verdict=lambda line, location: None):
     """The records of several files, each with its location and its file, and each result once. Calls `verdict` as each() does. Leaves out
-    copies, records that another record of the same key continues, and records of interrupted cells before a later one of the same sources. Raises RecordError for files that cannot be read, and for different records of one cell in one run."""
+    copies, records that another record of the same key continues, and records of interrupted cells before a later one that the same program
+    made on the same devices. Raises RecordError for files that cannot be read, and for different records of one cell in one run."""
     rows = [(record, location, path) for path in paths for record, location in each(path, verdict)]
     by_key = {}
     for number, (record, *_) in enumerate(rows):
@@ -161,14 +161,18 @@ def merged(paths, verdict=lambda line, location: None):
 
 def _superseded(rows):
     """Numbers of those records of one key that are left out."""
-    rounds, runs = {}, {}
+    rounds, runs, programs, partial = {}, {}, {}, set()
     for number, record, location in rows:
         try:
             rounds[number], runs[number] = samples_by_round(record), run_of(record)
+            programs[number] = program_of(record), [device["id"] for device in record["devices"]], record.get("status") != "failed"
+            if is_partial(record):
+                partial.add(number)
         except (KeyError, TypeError, AttributeError):
             raise RecordError(f"{location}: a record that lacks fields of its schema; {WHAT_TO_GIVE}") from None
     dropped = {number for number in rounds if any(continues(rounds[other], rounds[number]) for other in rounds)}
-    dropped |= {number for number, record, _ in rows if any(other > number and _measured_again(record, later) for other, later, _ in rows)}
+    # A later record that did not fail measures the interrupted cell again.
+    dropped |= {number for number in partial if any(other > number and program == (*programs[number][:2], True) for other, program in programs.items())}
     first = {}
     for number, record, location in rows:
         run = runs[number]

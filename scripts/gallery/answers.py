@@ -38,7 +38,7 @@ def judge(sources):
     for source in sources:
         recorded = source.shown.recorded
         if recorded.status != "ok" or recorded.pairs is None or recorded.pairs.count == 0:
-            if recorded.status == "ok":
+            if recorded.status == "ok" and not source.record["agreement"]:
                 unchecked.add(source.place)
             continue
         digests = known.get(work_of(source))

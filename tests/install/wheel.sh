@@ -25,9 +25,10 @@ mkdir "$work/licensed"
 PATH=$work/tools/bin:$PATH "$work/tools/bin/auditwheel" repair --exclude libOpenCL.so.1 --wheel-dir "$work/repaired" "$work"/licensed/*.whl
 wheel=$(echo "$work"/repaired/*.whl)
 echo "$(basename "$wheel"): $(stat -c %s "$wheel") bytes"
-/usr/bin/python3 -m zipfile -l "$wheel" | grep -E '\.libs/|licenses/|_core'
-for library in gmp tbb fmt; do /usr/bin/python3 -m zipfile -l "$wheel" | grep -q "\.libs/lib$library"; done
-if /usr/bin/python3 -m zipfile -l "$wheel" | grep -E 'libOpenCL|libmpi|libembree'; then echo "wheel.sh: must not be bundled" >&2; exit 1; fi
+listing=$(/usr/bin/python3 -m zipfile -l "$wheel")
+grep -E '\.libs/|licenses/|_core' <<<"$listing"
+for library in gmp tbb fmt; do grep -q "\.libs/lib$library" <<<"$listing"; done
+if grep -E 'libOpenCL|libmpi|libembree' <<<"$listing"; then echo "wheel.sh: must not be bundled" >&2; exit 1; fi
 
 /usr/bin/python3 -m venv "$work/empty"
 "$work/empty/bin/pip" install --quiet "$wheel"

@@ -3,10 +3,9 @@
 import contextlib
 import io
 import os
-import tempfile
 
 from ..errors import BadUse
-from ..files import check_output, replace_whole
+from ..files import check_output, replace_whole, temporary_folder
 from . import Parser, check_packages, run
 
 
@@ -18,8 +17,11 @@ def _parsed(arguments):
 
 
 def _words(path):
-    with open(path, encoding="utf-8", errors="replace") as file:
-        return [word for line in file for word in line.split("#")[0].split()]
+    try:
+        with open(path, encoding="utf-8", errors="replace") as file:
+            return [word for line in file for word in line.split("#")[0].split()]
+    except OSError as problem:
+        raise BadUse(f"{path}: cannot be read ({problem.strerror}); check the file") from None
 
 
 def _tet(path):
@@ -65,9 +67,12 @@ def _read(path):
 
 def _vtu(mesh):
     """The bytes of a .vtu file. meshio writes files only."""
-    with tempfile.TemporaryDirectory() as folder:
+    with temporary_folder() as folder:
         path = os.path.join(folder, "mesh.vtu")
-        mesh.write(path, file_format="vtu")
+        try:
+            mesh.write(path, file_format="vtu")
+        except Exception as problem:  # meshio has no type of its own
+            raise BadUse(f"meshio cannot write this mesh ({' '.join(str(problem).split())}); export its tetrahedra alone") from None
         with open(path, "rb") as file:
             return file.read()
 
@@ -78,7 +83,7 @@ def _make(arguments):
         raise BadUse(f"{options.output}: tandem convert writes .vtu; name a file FILE.vtu")
     if not os.path.isfile(options.file):
         raise BadUse(f"{options.file}: there is no such file; check the path")
-    check_output(options.output, [options.file])
+    check_output(options.output, [options.file], ".partial")
     check_packages("tandem convert", ("numpy", "meshio"))
     import numpy
     mesh = _read(options.file)

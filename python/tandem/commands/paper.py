@@ -121,6 +121,6 @@ def main(arguments, program):
         return print_error(error, 2)
     except OSError as error:
         return print_error(f"{error.filename or options.output}: {error.strerror}", 3)
-    if options.measure_only:
+    if options.measure_only or folder.interrupted:
         return worst
     return 3 if draw(options.output) else worst

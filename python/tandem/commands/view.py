@@ -36,7 +36,8 @@ def _make(options, program):
         return "", ended.code
     page.title, page.data["scene"] = f"{scene.name}, a scene of tandem", scene.json
     path = options.output or _file_name(scene.name)
-    check_output(path, (), ".partial")
+    if not options.output:
+        check_output(path, (), ".partial")
     written = write_page(path, page)
     return f"{path}: {scene.frames} {'frame' if scene.frames == 1 else 'frames'} of {scene.key}, {written / 1e6:.1f} MB\n", 0
 

@@ -58,6 +58,11 @@ class RecordedCell:
     def times(self):
         return list(self.rounds.values())
 
+    @property
+    def program(self):
+        """What identifies the program that made the record, as lines.program_of()."""
+        return self.commit, self.dirty, self.sources
+
 
 @dataclasses.dataclass
 class RecordedCells:

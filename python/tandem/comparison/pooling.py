@@ -5,17 +5,13 @@ import dataclasses
 import statistics
 
 
-def _program(cell):
-    return cell.commit, cell.dirty, cell.sources
-
-
 def counting(cells):
     """Those of the RecordedCells of one key, in the order of their lines, that count: the sessions of the program that wrote the last one.
     The last record of a session counts, because it continues the ones before. Records without a session count as one session. The record of
     an interrupted cell counts only if it is the last one: a later session has continued the cell, or measured it again."""
     found = {}
     for cell in cells:
-        if _program(cell) == _program(cells[-1]) and (not cell.is_partial or cell is cells[-1]):
+        if cell.program == cells[-1].program and (not cell.is_partial or cell is cells[-1]):
             found.pop(cell.session, None)
             found[cell.session] = cell
     return list(found.values())

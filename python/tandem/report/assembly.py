@@ -1,11 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Assembles a self-contained page from its own files, the libraries that it uses, and its data."""
 import dataclasses
-import os
 import pathlib
-import stat
 
-from ..errors import BadUse, OutputError
 from ..files import replace_whole
 from ..text_lines import visible, visible_json
 from .libraries import CHARTS, SCENES, scripts
@@ -58,13 +55,7 @@ def html_of(page):
 
 
 def write_page(path, page):
-    """Writes the page, atomically. Returns its size in bytes. Raises OutputError, and BadUse where PATH is no regular file."""
-    try:
-        is_file = stat.S_ISREG(os.stat(path).st_mode)
-    except OSError:
-        is_file = True  # replace_whole reports the error, if there is one
-    if not is_file:
-        raise BadUse(f"{path}: is not a regular file; choose another with -o")
+    """Writes the page, atomically, to a file that check_output() has accepted. Returns its size in bytes. Raises OutputError."""
     # Names of files and texts of records need not be valid UTF-8.
     html = html_of(page).encode(errors="replace")
     replace_whole(path, html)

@@ -35,10 +35,9 @@ class Point:
 @dataclasses.dataclass
 class History:
     """programs: texts of commits, the oldest first. points: {key: Points in this order}, of the keys that several programs recorded.
-    numbers: {key: number of its newest cell on the page}. left_out: number of keys beyond MAX_KEYS."""
+    left_out: number of keys beyond MAX_KEYS."""
     programs: list
     points: dict
-    numbers: dict
     left_out: int = 0
 
 
@@ -47,15 +46,11 @@ class _Side:
     cells: list
 
 
-def _program(recorded):
-    return recorded.commit, recorded.dirty, recorded.sources
-
-
 def _ordered(cells):
     """The programs of these cells by the date of their first record; in the order of the records if one has no date."""
     dates = {}
     for cell in cells:
-        dates.setdefault(_program(cell.recorded), []).append(cell.row[DATE] or "")
+        dates.setdefault(cell.recorded.program, []).append(cell.row[DATE] or "")
     first = {program: min(found) for program, found in dates.items()}
     return sorted(first, key=first.get) if all(first.values()) else list(first)
 
@@ -91,20 +86,18 @@ def _find_moves(points, programs):
 
 def history_of(cells):
     """History of ShownCells; None if no cell has records of two programs."""
-    good = [(number, cell) for number, cell in enumerate(cells) if cell.recorded.status == "ok" and cell.recorded.rounds]
-    programs = _ordered([cell for _, cell in good])
-    by_key, numbers = {}, {}
-    for number, cell in good:
-        by_key.setdefault(cell.recorded.key, {}).setdefault(programs.index(_program(cell.recorded)), []).append(cell.recorded)
-        if not cell.is_older:
-            numbers[cell.recorded.key] = number
+    good = [cell for cell in cells if cell.recorded.status == "ok" and cell.recorded.rounds]
+    programs = _ordered(good)
+    by_key = {}
+    for cell in good:
+        by_key.setdefault(cell.recorded.key, {}).setdefault(programs.index(cell.recorded.program), []).append(cell.recorded)
     several = {key: found for key, found in by_key.items() if len(found) > 1}
     if not several:
         return None
     shown = dict(list(several.items())[:MAX_KEYS])
     points = {key: [Point(program, _pooled(found[program])) for program in sorted(found)] for key, found in shown.items()}
     _find_moves(points, len(programs))
-    return History(_texts(programs), points, numbers, len(several) - len(shown))
+    return History(_texts(programs), points, len(several) - len(shown))
 
 
 def _change(point):
@@ -143,4 +136,4 @@ def shown_history(cells):
     named = "".join(f" {titles[key]}." for key in moved[:MAX_NAMED]) + (" The chart has the others." if len(moved) > MAX_NAMED else "")
     sentence = f"Over {len(found.programs)} commits, {len(moved) or 'none'} of {len(keys)} cells moved.{named}"
     return {"programs": found.programs, "left_out": found.left_out,
-            "cells": [{"cell": found.numbers.get(key), "label": labels[key], "title": titles[key], "points": [*map(_point, found.points[key])]} for key in keys]}, [sentence]
+            "cells": [{"label": labels[key], "title": titles[key], "points": [*map(_point, found.points[key])]} for key in keys]}, [sentence]

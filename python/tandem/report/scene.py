@@ -6,9 +6,9 @@ import os
 import pathlib
 import signal
 import subprocess
-import tempfile
 
-from ..errors import BadUse, OutputError
+from ..errors import OutputError
+from ..files import temporary_folder
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 OPTIONS = ("mesh", "pose", "frames", "every", "device", "duplicates", "weld")
@@ -36,7 +36,7 @@ class _SignalForwarder:
     """Context manager that forwards signals which end this process to the program that it runs."""
 
     def __init__(self):
-        self.signalled, self.process = False, None
+        self.signalled, self.process = 0, None
 
     def __enter__(self):
         self.before = {which: signal.getsignal(which) for which in SIGNALS}
@@ -49,8 +49,8 @@ class _SignalForwarder:
         for which, handler in self.before.items():
             signal.signal(which, handler)
 
-    def _end(self, *_):
-        self.signalled = True
+    def _end(self, number, _):
+        self.signalled = self.signalled or number
         if self.process is not None:
             self.process.terminate()
 
@@ -78,23 +78,17 @@ def _exported(forwarder, program, words, path, page):
     if code > 128 and not forwarder.signalled:
         raise OutputError(f"tandem export was ended by signal {code - 128}")
     if code != 0:
-        raise ExportEnded(code)
+        raise ExportEnded(128 + forwarder.signalled if forwarder.signalled else code)
     return path.read_text(encoding="utf-8").rstrip("\n")
 
 
-def _temporary_folder():
-    try:
-        return tempfile.TemporaryDirectory(prefix="tandem-")
-    except OSError as problem:
-        raise BadUse(f"no folder for temporary files ({problem.strerror}); set TMPDIR to one") from None
-
-
 def shown_scene(program, words, page=None):
-    """ShownScene of an export with the arguments `words`. `page`: the file of the page, which the program refuses if it is an input. Raises ExportEnded, BadUse and OutputError."""
+    """ShownScene of an export with the arguments `words`. `page`: the file of the page, which the program refuses if it is an input. Raises
+    ExportEnded, BadUse and OutputError."""
     with _SignalForwarder() as forwarder: # for as long as the folder exists: a signal never leaves it behind
-        with _temporary_folder() as folder:
+        with temporary_folder() as folder:
             text = _exported(forwarder, program, words, pathlib.Path(folder) / "scene.json", page)
         if forwarder.signalled:
-            raise ExportEnded(128 + signal.SIGTERM)
+            raise ExportEnded(128 + forwarder.signalled)
     scene = json.loads(text)
     return ShownScene(text, scene["name"], scene["key"], scene["of_frames"])

@@ -15,6 +15,7 @@ FIELDS = {"algorithm": True, "preset": True, "device": True, "driver": True, "sc
           "settings": True, "ms": False, "rounds": False, "samples": False, "stages": False, "launches": False, "waits": False, "pairs": False,
           "contacts": False, "error": False, "conditions": True, "sampling": True, "commit": True, "date": False, "command": True,
           "file": False, "line": False, "bodies": False, "tetrahedra": False, "label": False}
+STAGES = list(FIELDS).index("stages")
 MAX_FRAMES, MAX_LETTERS = 512, 2000
 CONTACT_ERRORS = ("depth_relative", "normal_degrees", "point", "hausdorff", "volume_relative")
 
@@ -23,8 +24,7 @@ CONTACT_ERRORS = ("depth_relative", "normal_degrees", "point", "hausdorff", "vol
 class ShownCell:
     """scene, scene_name, scene_digest: the scene's key, name and digest. frames: number of frames in a sample. is_older: another record of
     its key is shown as the newest. row: values by FIELDS without the label, which is added later. curve: ms of each frame; rounds: ms per
-    frame of each round; None if there are none. samples: by round. run: identifies the run, as of lines.run_of. stages: milliseconds a frame of
-    the stages that take time, the device's or the host's for stages without device time."""
+    frame of each round; None if there are none. samples: by round. run: identifies the run, as of lines.run_of."""
     recorded: RecordedCell
     scene: str
     scene_name: str
@@ -36,7 +36,12 @@ class ShownCell:
     rounds: list | None = None
     samples: dict = dataclasses.field(default_factory=dict)
     run: tuple | None = None
-    stages: dict = dataclasses.field(default_factory=dict)
+
+    @property
+    def stages(self):
+        """Milliseconds a frame of the stages that take time: the device's, or the host's for stages without device time."""
+        times = {name: device or host for name, (device, host, *_) in self.row[STAGES].items()}
+        return {name: ms for name, ms in times.items() if ms}
 
     def continues(self, other):
         """Whether this record has all rounds of the other and further ones, because that one was interrupted."""
@@ -45,7 +50,8 @@ class ShownCell:
     def replaces(self, earlier):
         """Whether only this one of two records of a key is shown: it continues the earlier one, or measures the interrupted cell again."""
         own, old = self.recorded, earlier.recorded
-        return self.continues(earlier) or (old.is_partial and own.status != "failed" and own.sources == old.sources)
+        is_same = (own.program, own.names["devices"]) == (old.program, old.names["devices"])
+        return self.continues(earlier) or (old.is_partial and own.status != "failed" and is_same)
 
     def is_copy_of(self, other):
         return bool(self.run) and self.run == other.run and self.samples == other.samples and self.recorded.status == other.recorded.status
@@ -77,11 +83,6 @@ def _stages(record, frames):
     stages = record.get("stages") or {}
     return {name: [_ms(at(stages[name], "device_ns", "median"), frames), _ms(at(stages[name], "host_ns", "median"), frames),
                    *(count(stages[name].get(what, 0)) for what in ("launches", "waits"))] for name in sorted(stages)}
-
-
-def _stage_times(stages):
-    times = {name: device or host for name, (device, host, *_) in stages.items()}
-    return {name: ms for name, ms in times.items() if ms}
 
 
 def _counts(stages):
@@ -147,4 +148,4 @@ def shown_cell(record, path, line, file):
     row = _row(record, read, (file, line), frames, scene)
     return ShownCell(read, scene, text(record["scene"]["name"]), text(record["scene"]["digest"]), frames, False, row,
                      _curve(at(record, "total_ns", "frames")), [rounded(ns / frames / 1e6) for ns in read.times()],
-                     lines.samples_by_round(record), lines.run_of(record), _stage_times(_stages(record, frames)))
+                     lines.samples_by_round(record), lines.run_of(record))
