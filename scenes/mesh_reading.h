@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <optional>
+#include <string_view>
 
 namespace tandem {
 
@@ -11,6 +13,9 @@ enum class Duplicates {
     keep,  ///< take part as every other tetrahedron
     reject ///< are an error
 };
+
+/// The values of Duplicates as options and records name them, in this order.
+inline constexpr std::array<std::string_view, 3> duplicates_names{"merge", "keep", "reject"};
 
 /// How meshes are read and connected. Decided once, before the first frame, in the unit of the mesh.
 struct MeshReading {

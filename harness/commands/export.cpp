@@ -162,6 +162,7 @@ int export_command(const ExportOptions& options) {
     if (options.to_csv) return export_csv(options);
     check_outputs(options);
     const auto scene = open_scene(options);
+    report_findings(scene);
     const auto [first, last] = named_frames(options.frames, scene);
     std::vector<std::size_t> frames;
     for (auto i = first; i <= last; i += options.every) frames.push_back(i);

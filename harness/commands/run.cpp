@@ -130,6 +130,7 @@ private:
     std::size_t listed_ = 0, unknown_ = 0, measured_ = 0, left_out_ = 0, verdicts_ = 0;
     double seconds_ = 0;
     bool interrupted_ = false;
+    bool dump_ended_ = false; ///< a signal ended the dump
 };
 
 Run::Run(const RunOptions& options, RankTeam* team)
@@ -238,7 +239,12 @@ int Run::measure(Job& job) {
     for (const auto& cell : job.cells)
         if (const auto found = results.find(&cell); found != results.end() && found->second.measured) {
             const bool continues = !decided(team_, file_->failed());
-            if (continues) dump(cell, job, *pairs_, *contacts_);
+            if (continues) try {
+                    dump(cell, job, *pairs_, *contacts_);
+                } catch (const Interrupted&) {
+                    interrupted_ = dump_ended_ = true;
+                    return code;
+                }
             if (continues && !options_.trace.empty()) trace_->write(trace_frame(cell, job));
             break;
         }
@@ -267,8 +273,9 @@ int Run::end(int code) {
         put("{} records appended to {}\n", file_->appended() - verdicts_, options_.out);
     if (!interrupted_ && !file_->failed()) unfinished_.remove();
     if (!interrupted_ || file_->failed()) return code;
-    const bool can_resume = !options_.out.empty();
-    print_message("tandem: interrupted; {} cells are measured{}\n", measured_,
+    const bool can_resume = !options_.out.empty() && !dump_ended_;
+    print_message("tandem: interrupted; {} cells are measured{}{}\n", measured_,
+                  dump_ended_ ? "; the dump lacks frames: run again without --resume" : "",
                   can_resume
                       ? fmt::format("; to continue: {}{}", command_line(), options_.resume ? "" : " --resume")
                       : "");

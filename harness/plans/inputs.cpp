@@ -44,13 +44,12 @@ std::size_t parse_number(std::string_view text, const std::string& whole) {
 
 } // namespace
 
-Scene reported(Scene scene) {
+void report_findings(const Scene& scene) {
     std::set<std::string> lines; // several bodies may read the same file
     for (const auto& mesh : scene.meshes)
         if (const auto text = findings_text(mesh); !text.empty())
             lines.insert(fmt::format("tandem: mesh {}: {}\n", mesh.name, text));
     for (const auto& line : lines) print_message_text(line);
-    return scene;
 }
 
 Scene open_scene(const RunOptions& options) {
@@ -58,7 +57,7 @@ Scene open_scene(const RunOptions& options) {
         if (options.scene.empty())
             throw InputError("no scene; name one (see 'tandem scenes') or give --mesh FILE");
         if (!options.poses.empty()) throw InputError("--pose requires --mesh; a scene has its own poses");
-        return reported(make_scene(options.scene, options.reading));
+        return make_scene(options.scene, options.reading);
     }
     if (!options.scene.empty() || options.scenes.size() > 1)
         throw InputError("a scene and --mesh exclude each other; leave one out");
@@ -66,7 +65,7 @@ Scene open_scene(const RunOptions& options) {
         throw InputError("more --pose than --mesh; give at most one pose for each mesh");
     std::vector<Pose> poses;
     for (const auto& text : options.poses) poses.push_back(parse_pose(text));
-    return reported(scene_from_meshes(options.meshes, poses, options.reading));
+    return scene_from_meshes(options.meshes, poses, options.reading);
 }
 
 FrameRange open_frames(const RunOptions& options, const Scene& scene, bool bounds_motion) {

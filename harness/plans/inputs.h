@@ -6,9 +6,9 @@
 
 namespace tandem {
 
-/// Prints what readers found in the meshes of a scene, one line a mesh file on standard error, and returns
-/// the scene.
-Scene reported(Scene scene);
+/// Prints what readers found in the meshes of a scene: one line a mesh file, on standard error. For commands
+/// that open a scene for a user; print_scene() (job.h) calls it.
+void report_findings(const Scene& scene);
 
 /// Opens the scene of the options: a kind, a description, or mesh files with poses. Throws InputError.
 Scene open_scene(const RunOptions& options);

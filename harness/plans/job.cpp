@@ -173,7 +173,10 @@ std::string scene_text(const Scene& scene, const FrameRange& range) {
     return text;
 }
 
-void print_scene(const Scene& scene, const FrameRange& range) { put_text(scene_text(scene, range)); }
+void print_scene(const Scene& scene, const FrameRange& range) {
+    put_text(scene_text(scene, range));
+    report_findings(scene);
+}
 
 bool misses_against_its_promise(const Measurement& m) {
     const auto rounding = m.settings[parameters::rounding];

@@ -25,16 +25,21 @@ namespace {
 /// Frames with more pairs are not examined: sorting them takes long, and each pair takes 16 bytes.
 constexpr std::uint64_t most_examined_pairs = std::uint64_t{1} << 27;
 
-/// Counts the data that the candidate pairs of the mean frame touch, in a separate replay.
+/// Counts the data that the candidate pairs of the mean frame touch, in a separate replay. After a signal it
+/// counts none, so that the bounds are lower.
 void count_touched(profile::Profile& profile, const Cell& cell, const Job& job, const Measurement& m) {
-    if (m.candidate_pairs.empty() || !has_pairs(m.settings[parameters::output])
+    if (Interrupt::asked() || m.candidate_pairs.empty() || !has_pairs(m.settings[parameters::output])
         || *std::ranges::max_element(m.candidate_pairs) > most_examined_pairs)
         return;
     auto& facts = profile.facts;
-    Replays replays(cell, job.scene, job.range);
-    replays.timed([&](std::size_t, const FrameResult& result) {
-        add_touched(facts, job.scene, m.settings, result.download());
-    });
+    try {
+        Replays replays(cell, job.scene, job.range, Interrupt::asked);
+        replays.timed([&](std::size_t, const FrameResult& result) {
+            add_touched(facts, job.scene, m.settings, result.download());
+        });
+    } catch (const Interrupted&) {
+        facts.touched = facts.touched_rows = facts.touched_vertices = 0;
+    }
     const auto frames = static_cast<double>(job.range.size());
     for (auto* sum : {&facts.touched, &facts.touched_rows, &facts.touched_vertices}) *sum /= frames;
 }
@@ -180,7 +185,7 @@ int Profiling::go() {
         trace_->write(trace_frame(*traced_, *job_));
     if (traced_ != nullptr) put_text("\n" + profile::profile_legend());
     if (!run_.out.empty()) put("{} records appended to {}\n", file_->appended(), run_.out);
-    return interrupted ? Interrupt::exit_code() : code_;
+    return interrupted && !file_->failed() ? Interrupt::exit_code() : code_;
 }
 
 } // namespace

@@ -27,16 +27,11 @@ auto found(std::size_t MeshFindings::*member) {
     };
 }
 
-std::string_view name_of(Duplicates handling) {
-    constexpr std::array names{"merge", "keep", "reject"};
-    return names.at(static_cast<std::size_t>(handling));
-}
-
 const Fields<Scene>& reading_fields() {
     static const Fields<Scene> fields{
-        {"handling", one_of({"merge", "keep", "reject"}),
+        {"handling", one_of(Json(duplicates_names)),
          "--duplicates. merge: duplicates take no part; keep: they take part; reject: there are none",
-         [](auto& s) { return name_of(s.reading.duplicates); }},
+         [](auto& s) { return duplicates_names.at(static_cast<std::size_t>(s.reading.duplicates)); }},
         {"duplicates", count(), "tetrahedra with the four vertices of an earlier one",
          found(&MeshFindings::duplicates)},
         {"weld", nullable(number_from(0)),

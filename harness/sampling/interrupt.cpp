@@ -2,6 +2,7 @@
 #include "harness/sampling/interrupt.h"
 
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <ctime>
@@ -11,7 +12,9 @@ namespace tandem {
 
 namespace {
 
-volatile std::sig_atomic_t signalled = 0; ///< the number of the first signal; 0: none
+/// The number of the first signal; 0: none. Threads read what a handler on another thread writes.
+std::atomic<int> signalled = 0;
+static_assert(std::atomic<int>::is_always_lock_free);
 std::string_view acknowledgement;
 constexpr std::string_view erase_line = "\r\033[K"; ///< removes a progress line
 bool erases_line = false;

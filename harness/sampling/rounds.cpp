@@ -123,7 +123,9 @@ bool Group::run_round(Outcome& outcome, bool is_first, const Work& work) {
     } catch (const Interrupted&) {
         outcome.sampler->release();
         const bool has_round = !outcome.sampler->measurement().breakdowns.empty();
-        if (!has_round && outcome.sampler->state().is_checked()) listener_.kept(*outcome.sampler, true);
+        // Later rounds have been kept when they ended.
+        if ((is_first || !has_round) && outcome.sampler->state().is_checked())
+            listener_.kept(*outcome.sampler, true);
         return has_round;
     } catch (const DeviceError& error) {
         // An error of a single rank ends the job, because the other ranks wait for that rank.
@@ -144,8 +146,9 @@ bool Group::begin(Outcome& outcome) {
     running_ = &outcome;
     began_ = std::chrono::steady_clock::now();
     return run_round(outcome, true, [&] {
-        if (!cell.state().is_checked()) cell.check(check_);
-        outcome.check = {static_cast<double>(since(began_)) * 1e-9, 1};
+        const bool is_resumed = cell.state().is_checked();
+        if (!is_resumed) cell.check(check_);
+        outcome.check = {is_resumed ? 0 : static_cast<double>(since(began_)) * 1e-9, 1};
         if (cell.measurement().breakdowns.empty()) {
             // The device waited for the host during the check; begin the first round as every other round,
             // with a new session.

@@ -5,12 +5,14 @@ namespace tandem {
 
 namespace {
 
-/// Seconds left of one part of all cells. `usual`: of a whole part, while none has begun.
+/// Seconds left of one part of all cells. `usual`: of a whole part, while none has begun. Parts that took no
+/// time were done before, or have failed.
 std::optional<double> left_of(std::span<const CellWork> cells, std::size_t later, WorkDone CellWork::*part,
                               std::optional<double> usual) {
     double seconds = 0, begun = 0;
     for (const auto& cell : cells)
-        if ((cell.*part).fraction > 0) seconds += (cell.*part).seconds, begun += (cell.*part).fraction;
+        if ((cell.*part).fraction > 0 && (cell.*part).seconds > 0)
+            seconds += (cell.*part).seconds, begun += (cell.*part).fraction;
     const auto mean = begun > 0 ? std::optional(seconds / begun) : usual;
     double left = 0;
     std::size_t whole = later;

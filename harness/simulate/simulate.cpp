@@ -34,7 +34,7 @@ constexpr int warming_replays = 3;
 /// Opens a scene with dynamics and applies the settings of --dynamics.
 Scene open_scene(const SimulateOptions& options) {
     if (options.scene.empty()) throw InputError("no scene; name one, see 'tandem scenes'");
-    auto scene = reported(make_scene(options.scene, options.reading));
+    auto scene = make_scene(options.scene, options.reading);
     if (!scene.dynamics)
         throw InputError(fmt::format("scene {} has no dynamics, its motion is scripted; measure it with "
                                      "'tandem run'",
@@ -221,7 +221,9 @@ void ContactFinder::find(const Frame& frame, std::vector<ContactPoint>& contacts
 ContactSearch ContactFinder::take() { return std::exchange(search_, {}); }
 
 int simulate_command(const SimulateOptions& options) {
+    refuse_no_output(options);
     const auto scene = open_scene(options);
+    report_findings(scene);
     // The tools for pictures are checked first, before hours of simulation.
     std::optional<Pictures> pictures;
     if (!options.pictures.empty()) pictures.emplace(options.pictures);
@@ -231,8 +233,7 @@ int simulate_command(const SimulateOptions& options) {
     const auto cell = only_cell(request, backends);
     refuse_settings(cell.settings);
     check_coordinates(cell, scene, scene.frame(0));
-    refuse_no_output(options);
-    const Interrupt interrupt(Interrupt::stopping);
+    std::optional<Interrupt> interrupt(std::in_place, Interrupt::stopping);
     Simulation simulation(scene);
     // Opened before the recording is made: if this fails, no recording remains to block a second try.
     RecordFile file(options.record);
@@ -246,6 +247,7 @@ int simulate_command(const SimulateOptions& options) {
     totals.session = session.number();
     run_and_record(options, last, cell, scene, simulation, {session, file, totals});
     if (simulation.steps_done() < last) return end_interrupted(options, simulation.steps_done(), last);
+    interrupt.reset(); // nothing that is drawn needs to be kept
     if (pictures) pictures->draw(options.recording);
     return 0;
 }

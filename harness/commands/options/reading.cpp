@@ -6,7 +6,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -17,19 +16,19 @@ namespace {
 constexpr auto duplicates_help =
     "tetrahedra with the four vertices of an earlier one: merge (they keep their numbers and take no part), "
     "keep (they take part) or reject (default: merge)";
-constexpr auto duplicates_choices = "merge|keep|reject";
 constexpr auto weld_help =
     "vertices at most this far apart count as one for boundary faces, duplicates and setting self; "
     "coordinates stay (default: no welding)";
 constexpr auto corners_help = "read tetrahedra of higher order by their corners (default: refuse them)";
 constexpr auto only_help = "leave out volume cells that are not tetrahedra (default: refuse them)";
 
+std::string duplicates_choices() { return fmt::format("{}", fmt::join(duplicates_names, "|")); }
+
 Duplicates duplicates_named(const std::string& name) {
-    constexpr std::array names{"merge", "keep", "reject"};
-    const auto found = std::ranges::find(names, name);
-    if (found == names.end())
+    const auto found = std::ranges::find(duplicates_names, name);
+    if (found == duplicates_names.end())
         throw InputError(fmt::format("--duplicates {}: give merge, keep or reject", name));
-    return static_cast<Duplicates>(found - names.begin());
+    return static_cast<Duplicates>(found - duplicates_names.begin());
 }
 
 } // namespace
@@ -39,7 +38,7 @@ void add_reading_options(CLI::App& app, MeshReading& reading) {
            "--duplicates",
            [&reading](const std::string& text) { reading.duplicates = duplicates_named(text); },
            duplicates_help)
-        ->option_text(duplicates_choices);
+        ->option_text(duplicates_choices());
     app.add_option_function<double>(
            "--weld",
            [&reading](double tolerance) {
@@ -54,7 +53,7 @@ void add_reading_options(CLI::App& app, MeshReading& reading) {
 }
 
 std::vector<CLI::Option*> add_external_reading_options(CLI::App& app) {
-    return {add_external_option(app, "--duplicates", duplicates_help)->option_text(duplicates_choices),
+    return {add_external_option(app, "--duplicates", duplicates_help)->option_text(duplicates_choices()),
             add_external_option(app, "--weld", weld_help)->option_text("TOLERANCE"),
             add_external_flag(app, "--corners", corners_help),
             add_external_flag(app, "--only-tetrahedra", only_help)};

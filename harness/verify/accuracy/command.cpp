@@ -138,6 +138,7 @@ void print_row(const Cell& cell, const Measurement& m) {
 int measure_scene(const RunOptions& options, const std::vector<Cell>& cells, RecordFile& file) {
     auto own = options;
     auto scene = open_scene(own);
+    report_findings(scene);
     if (own.frames.empty()) own.frames = middle_frames(scene);
     const Job job(std::move(scene), own, cells);
     print_scene(job.scene, job.range);
@@ -190,7 +191,7 @@ int accuracy_command(const AccuracyOptions& options) {
     const auto records =
         figures && options.run.out.empty() ? options.figures + "/accuracy.jsonl" : options.run.out;
     RecordFile file(records);
-    const Interrupt interrupt(Interrupt::stopping);
+    std::optional<Interrupt> interrupt(std::in_place, Interrupt::stopping);
     int code = 0;
     for (const auto& given : scenes)
         for (const auto& scene : expand(given, options.run.degenerate)) {
@@ -204,6 +205,7 @@ int accuracy_command(const AccuracyOptions& options) {
         "u: half a unit in the last place of 1; L: the longest edge; volume: relative error of the volume of "
         "the contact\n"
         "points' hull; MISSES: intersecting pairs are missing from the candidates\n");
+    interrupt.reset(); // the program that draws has its own
     if (figures) figures->draw(records);
     return code;
 }
