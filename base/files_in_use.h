@@ -20,7 +20,8 @@ public:
 /// Every reader of a mesh, a description, a plan or a recording calls this, with the file that it has opened.
 /// Throws InputError if that is an output of this process. Thread-safe.
 void note_input(const std::string& path);
-/// Every writer of a file calls this once the file is open. Thread-safe.
+/// A writer that stays open while other files are read calls this once its file is open: records and dumps.
+/// Thread-safe.
 void note_output(const std::string& path);
 
 /// For a file that is open for writing and not yet truncated. Throws InputError if it is an input or another

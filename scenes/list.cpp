@@ -112,6 +112,11 @@ Scene make_scene(std::string_view specification, const MeshReading& reading) {
         if (kind.name != name) continue;
         const auto rest =
             name.size() < specification.size() ? specification.substr(name.size() + 1) : std::string_view();
+        if (reading.corners || reading.only_tetrahedra)
+            throw InputError(
+                fmt::format("--corners and --only-tetrahedra do not go with scene {}; give --mesh FILE or a "
+                            "scene description",
+                            kind.name));
         const auto parameters = with_values(kind, rest);
         auto scene = kind.make(parameters);
         scene.name = kind.name;

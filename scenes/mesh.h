@@ -13,7 +13,7 @@ namespace tandem {
 
 using Tetrahedron = std::array<std::uint32_t, 4>;
 
-/// What a reader met in a mesh, as counts.
+/// What a reader found in a mesh, as counts.
 struct MeshFindings {
     std::size_t duplicates = 0; ///< tetrahedra with the same four vertices as an earlier one
     std::size_t coincident = 0; ///< vertices at the position of an earlier one; counted in files and arrays
@@ -62,9 +62,9 @@ std::string findings_text(const Mesh& mesh);
 /// Counts inverted and degenerate tetrahedra; indices must be in range.
 void count_flawed(Mesh& mesh);
 
-/// Reads a tetrahedral mesh; content and suffix determine the format: Gmsh .msh 2.2 and 4.1 (ASCII and
-/// binary), Medit .mesh, TetGen .node/.ele (either file names the pair), legacy .vtk and .vtu. Returns a
-/// completed mesh; throws InputError with file:line.
+/// Reads a tetrahedral mesh; content and suffix determine the format: Gmsh .msh 1, 2.2 and 4.1 (ASCII and
+/// binary), Medit .mesh, TetGen .node/.ele (either file names the pair), Vega .veg, legacy .vtk and .vtu, and
+/// all of them compressed by gzip. Returns a completed mesh; throws InputError with file:line.
 Mesh read_mesh(const std::string& path, const MeshReading& reading = {});
 
 /// Volume of the union of non-overlapping tetrahedra: the sum of |det|/6, without merged duplicates.

@@ -17,7 +17,8 @@ enum class Duplicates {
 /// The values of Duplicates as options and records name them, in this order.
 inline constexpr std::array<std::string_view, 3> duplicates_names{"merge", "keep", "reject"};
 
-/// How meshes are read and connected. Decided once, before the first frame, in the unit of the mesh.
+/// How meshes are read and connected. Decided once, before the first frame, in the unit of the scene: after
+/// the scale of a description.
 struct MeshReading {
     Duplicates duplicates = Duplicates::merge;
     /// Vertices at most this far apart, also along chains, are one vertex for boundary faces, duplicates and

@@ -53,7 +53,7 @@ struct Scene {
     std::function<double(std::size_t)> time;  ///< time of frame i in s; null: frames have no times
     std::string end;          ///< message for frames after the last of a recording; empty in other scenes
     std::uint64_t digest = 0; ///< digest of meshes, bodies and motion; equal on every machine
-    MeshReading reading{};    ///< how its mesh files were read
+    MeshReading reading{};    ///< how its meshes were read and connected
     /// In a subscene, the number of each body in the whole scene, ascending. Empty in a whole scene.
     std::vector<std::uint32_t> numbers{};
 };
@@ -92,7 +92,7 @@ struct SceneKind {
 std::span<const SceneKind> scene_kinds();
 
 /// "NAME", "NAME:par=value,par=value", or the path of a scene description (.json) or of a recording
-/// (.frames). `reading` holds for mesh files, and its duplicates and welding for all meshes. Throws
+/// (.frames). `reading` applies to mesh files, and its duplicates and welding to all meshes. Throws
 /// InputError.
 Scene make_scene(std::string_view specification, const MeshReading& reading = {});
 

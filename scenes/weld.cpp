@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/weld.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <numeric>

@@ -30,8 +30,8 @@ void check_mesh(const Mesh& mesh, std::size_t number, Precision precision) {
         if (!(mesh.vertices[v].array().abs() <= limit).all()) // also NaN
             throw InputError(
                 fmt::format("mesh {}: vertex {} has a coordinate that is not finite or exceeds {:g}, "
-                            "the most of this precision",
-                            number, v, limit));
+                            "the most of this precision; use larger units{}",
+                            number, v, limit, precision == Precision::fp64 ? "" : " or precision=double"));
 }
 
 /// The squared length of a product of rounded rotations stays within it by orders of magnitude.

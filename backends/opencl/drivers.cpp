@@ -4,12 +4,14 @@
 #include "backends/opencl/cl.h"
 #include "backends/opencl/registration.h"
 #include "base/text_lines.h"
-#include "base/writable.h"
 
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <dlfcn.h>
 #include <filesystem>
 #include <fmt/format.h>
+#include <unistd.h>
 
 namespace tandem::opencl {
 
@@ -44,6 +46,21 @@ fs::path pocl_cache() {
     return "/tmp/pocl/kcache";
 }
 
+/// Why no file can be made in a folder, as the system words it; empty when one can. Makes a missing folder,
+/// as the library whose cache it is does, and removes its own trial file.
+std::string why_not_writable(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) return error.message();
+    // Permissions alone do not tell: a file system can be read-only or full.
+    auto name = (folder / ".tandem-XXXXXX").string();
+    const int file = mkstemp(name.data());
+    if (file < 0) return std::strerror(errno);
+    close(file);
+    unlink(name.c_str());
+    return {};
+}
+
 /// Why the kernel cache of a platform fails; empty when it works or is unknown.
 std::string cache_problem(const std::string& platform) {
     if (platform != "Portable Computing Language") return {};
@@ -66,31 +83,35 @@ DriverReport::Platform platform_of(cl_platform_id platform) {
     return found;
 }
 
-/// Fills in the platforms of a loaded driver, or the reason why it lists none.
-void ask(DriverReport& driver, void* library) {
+/// The platforms of an opened driver, or the reason why it lists none.
+std::vector<cl_platform_id> platforms_of(DriverReport& driver, void* library) {
     auto* const get = reinterpret_cast<GetFunction*>(dlsym(library, "clGetExtensionFunctionAddress"));
     auto* list = get == nullptr ? nullptr : reinterpret_cast<GetPlatforms*>(get("clIcdGetPlatformIDsKHR"));
     if (list == nullptr) {
         driver.problem =
             fmt::format("the library is no OpenCL driver: it has no {}",
                         get == nullptr ? "clGetExtensionFunctionAddress" : "clIcdGetPlatformIDsKHR");
-        return;
+        return {};
     }
     cl_uint count = 0;
     if (const auto code = list(0, nullptr, &count); code != CL_SUCCESS || count == 0) {
         driver.problem = fmt::format("it lists no platform (code {})", code);
-        return;
+        return {};
     }
     std::vector<cl_platform_id> platforms(count);
     list(count, platforms.data(), nullptr);
-    for (auto* platform : platforms) {
+    return platforms;
+}
+
+/// Fills in the platforms of a driver that the loader uses.
+void ask(DriverReport& driver, void* library) {
+    for (auto* platform : platforms_of(driver, library)) {
         auto found = platform_of(platform);
-        const auto cache = cache_problem(found.name);
-        if (found.devices == 0)
+        if (found.devices == 0) {
+            const auto cache = cache_problem(found.name);
             driver.problem =
                 fmt::format("platform '{}' has no device{}{}", found.name, cache.empty() ? "" : ": ", cache);
-        else if (!cache.empty())
-            driver.problem = cache;
+        }
         driver.platforms.push_back(std::move(found));
     }
 }
@@ -100,7 +121,7 @@ void examine(DriverReport& driver) {
     void* loaded = dlopen(driver.library.c_str(), RTLD_LAZY | RTLD_NOLOAD);
     if (loaded != nullptr) {
         ask(driver, loaded);
-        dlclose(loaded); // the loader still holds it
+        dlclose(loaded); // the loader keeps it open
         return;
     }
     loaded = dlopen(driver.library.c_str(), RTLD_LAZY | RTLD_LOCAL);
@@ -110,8 +131,9 @@ void examine(DriverReport& driver) {
             fmt::format("the library does not load: {}{}", reason, advice(reason, driver.library));
         return;
     }
-    // Drivers do not support being unloaded, so that it stays.
-    ask(driver, loaded);
+    // Drivers do not support being unloaded, so that it stays. The loader has not prepared its platforms for
+    // calls.
+    platforms_of(driver, loaded);
     if (driver.problem.empty()) driver.problem = "the library works, but the OpenCL loader has not loaded it";
 }
 

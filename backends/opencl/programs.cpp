@@ -72,13 +72,14 @@ cl_program Programs::build(Queue& queue, const KernelSource& source, const std::
     queue.check(code, "clCreateProgramWithSource", "compiling");
     // A second time, because PoCL fails when processes write the same program into its cache at once: the one
     // that removes the older file second finds none. The cache then has the program.
-    for (int attempt = 0; attempt < 2; ++attempt)
-        if (clBuildProgram(program, 1, &device_, options.c_str(), nullptr, nullptr) == CL_SUCCESS)
-            return built_[key] = program;
+    for (int attempt = 0; attempt < 2; ++attempt) {
+        code = clBuildProgram(program, 1, &device_, options.c_str(), nullptr, nullptr);
+        if (code == CL_SUCCESS) return built_[key] = program;
+    }
     const auto log = build_log(program, device_);
     clReleaseProgram(program);
-    throw DeviceError(fmt::format("{}: {} does not compile with {}: {}", info_.id, source.name, options,
-                                  decisive_line(log)));
+    throw DeviceError(fmt::format("{}: {} does not compile with {} (code {}): {}", info_.id, source.name,
+                                  options, code, decisive_line(log)));
 }
 
 std::shared_ptr<OpenclKernel> Programs::compile(Queue& queue, const KernelSource& source,

@@ -38,8 +38,9 @@ DriverReport read_file(const fs::path& path) {
 std::vector<DriverReport> read_folder(const fs::path& folder) {
     std::vector<fs::path> files;
     std::error_code ignored; // without a folder, no driver is registered
-    for (const auto& entry : fs::directory_iterator(folder, ignored))
-        if (is_icd_file(entry.path())) files.push_back(entry.path());
+    for (fs::directory_iterator entry(folder, ignored); entry != fs::directory_iterator();
+         entry.increment(ignored))
+        if (is_icd_file(entry->path())) files.push_back(entry->path());
     std::sort(files.begin(), files.end());
     std::vector<DriverReport> drivers;
     for (const auto& file : files) drivers.push_back(read_file(file));

@@ -45,11 +45,10 @@ std::size_t parse_number(std::string_view text, const std::string& whole) {
 } // namespace
 
 void report_findings(const Scene& scene) {
-    std::set<std::string> lines; // several bodies may read the same file
+    std::set<std::pair<std::string, std::string>> found; // several bodies may read the same file
     for (const auto& mesh : scene.meshes)
-        if (const auto text = findings_text(mesh); !text.empty())
-            lines.insert(fmt::format("tandem: mesh {}: {}\n", mesh.name, text));
-    for (const auto& line : lines) print_message_text(line);
+        if (const auto text = findings_text(mesh); !text.empty()) found.emplace(mesh.name, text);
+    for (const auto& [name, text] : found) print_message("tandem: mesh {}: {}\n", name, text);
 }
 
 Scene open_scene(const RunOptions& options) {

@@ -31,8 +31,8 @@ Pictures::Pictures(std::string out)
     for (const int number : {0, 1, 2}) check_output(fmt::format("{}-{}.png", out_, number));
 }
 
-void Pictures::draw(const std::string& recording) const {
-    const auto scene = load_recording(recording);
+void Pictures::draw(const std::string& recording, const MeshReading& reading) const {
+    const auto scene = load_recording(recording, reading);
     const TemporaryDirectory folder;
     const auto glb = folder.path() + "/frames.glb";
     const auto last = scene.frame_count - 1;

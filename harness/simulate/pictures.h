@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "scenes/mesh_reading.h"
+
 #include <string>
 
 namespace tandem {
@@ -12,9 +14,9 @@ public:
     /// is no Python with numpy and Pillow, or the folder cannot be made.
     explicit Pictures(std::string out);
 
-    /// Draws the pictures and prints their paths. Throws InputError when the script fails; its messages are
-    /// on standard error.
-    void draw(const std::string& recording) const;
+    /// Draws the pictures and prints their paths. `reading`: how the recorded scene was read. Throws
+    /// InputError when the script fails; its messages are on standard error.
+    void draw(const std::string& recording, const MeshReading& reading) const;
 
 private:
     std::string out_, script_, python_;

@@ -169,8 +169,8 @@ void run_and_record(const SimulateOptions& options, std::size_t last, const Cell
     put_text(run_table(totals, !options.record.empty()));
     warn_not_converged(totals);
     if (!options.recording.empty())
-        put("{}: {} frames; measure them with 'tandem run {}'\n", options.recording, session.frames(),
-            options.recording);
+        put("{}: {} frames; measure them with 'tandem run {}'{}\n", options.recording, session.frames(),
+            options.recording, options.reading == MeshReading() ? "" : " and the same options of meshes");
     const bool interrupted = simulation.steps_done() < last;
     file.append(run_record(cell, scene, totals, interrupted ? "interrupted by a signal" : ""));
 }
@@ -248,7 +248,7 @@ int simulate_command(const SimulateOptions& options) {
     run_and_record(options, last, cell, scene, simulation, {session, file, totals});
     if (simulation.steps_done() < last) return end_interrupted(options, simulation.steps_done(), last);
     interrupt.reset(); // nothing that is drawn needs to be kept
-    if (pictures) pictures->draw(options.recording);
+    if (pictures) pictures->draw(options.recording, options.reading);
     return 0;
 }
 

@@ -71,11 +71,18 @@ Mesh read_one(const Json& json, const JsonLocation& location, const Files& files
     check_names(json, location, {"builtin", "file", "box", "scale"});
     if (json.contains("builtin") + json.contains("file") + json.contains("box") != 1)
         location.fail("must name one builtin, file or box");
-    auto mesh = read_source(json, location, files);
-    if (!json.contains("scale")) return mesh;
-    const double scale = positive(json["scale"], location / "scale");
-    for (auto& v : mesh.vertices) v *= scale;
-    complete_mesh(mesh, location.text(), files.reading);
+    const bool is_scaled = json.contains("scale");
+    auto source = files;
+    if (is_scaled) { // connected below, in the unit of the scene
+        source.reading.weld.reset();
+        source.reading.duplicates = Duplicates::keep;
+    }
+    auto mesh = read_source(json, location, source);
+    if (is_scaled) {
+        const double scale = positive(json["scale"], location / "scale");
+        for (auto& v : mesh.vertices) v *= scale;
+    }
+    if (is_scaled || !json.contains("file")) complete_mesh(mesh, location.text(), files.reading);
     return mesh;
 }
 
@@ -112,7 +119,7 @@ Motion read_motion(const Json& json, const JsonLocation& location, std::size_t f
 }
 
 std::shared_ptr<const Series> read_series(const Json& json, const JsonLocation& location, const Mesh& mesh,
-                                          std::size_t frames) {
+                                          std::size_t frames, const MeshReading& reading) {
     for (const auto* name : {"fixed", "position", "rotation", "velocity", "spin", "poses"})
         if (json.contains(name)) (location / name).fail("is replaced by series; leave one out");
     const auto& files = json["series"];
@@ -123,7 +130,7 @@ std::shared_ptr<const Series> read_series(const Json& json, const JsonLocation& 
     for (std::size_t i = 0; i < frames; ++i)
         paths.push_back(
             (std::filesystem::path(location.file).parent_path() / text(files[i], place / i)).string());
-    return std::make_shared<const Series>(std::move(paths), mesh);
+    return std::make_shared<const Series>(std::move(paths), mesh, reading);
 }
 
 /// The bits of a list of groups.
@@ -199,8 +206,9 @@ std::vector<Motion> read_bodies(const Json& json, const JsonLocation& root, Scen
         const auto& body = json["bodies"][i];
         motions.push_back(read_motion(body, root / "bodies" / i, scene.frame_count));
         if (body.contains("series"))
-            motions.back().series = read_series(body, root / "bodies" / i,
-                                                scene.meshes[scene.bodies.back().mesh], scene.frame_count);
+            motions.back().series =
+                read_series(body, root / "bodies" / i, scene.meshes[scene.bodies.back().mesh],
+                            scene.frame_count, scene.reading);
     }
     return motions;
 }

@@ -2,6 +2,7 @@
 #include "scenes/read/gzip.h"
 
 #include "base/error.h"
+#include "base/memory.h"
 
 #include <algorithm>
 #include <array>
@@ -46,6 +47,7 @@ std::string gunzipped(std::string_view bytes, const std::string& source) {
     auto& stream = inflater.stream();
     std::string result;
     std::array<char, 1 << 16> part;
+    const auto limit = free_memory() / 3; // a growing text is in memory twice
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data())); // zlib only reads
     auto left = bytes.size();
     int status = Z_OK;
@@ -57,8 +59,13 @@ std::string gunzipped(std::string_view bytes, const std::string& source) {
         stream.avail_out = static_cast<uInt>(part.size());
         status = inflate(&stream, Z_NO_FLUSH);
         left -= given - stream.avail_in;
+        if (result.size() > limit)
+            throw InputError(fmt::format(
+                "{}: its content does not fit into memory; unpack it and give a smaller mesh", source));
         result.append(part.data(), part.size() - stream.avail_out);
-        if (status == Z_STREAM_END && left > 0) status = inflateReset(&stream); // another member
+        // Zeros behind a member are padding; anything else is another member.
+        if (status == Z_STREAM_END && bytes.find_first_not_of('\0', bytes.size() - left) != bytes.npos)
+            status = inflateReset(&stream);
     } while (status == Z_OK && (left > 0 || stream.avail_out == 0));
     if (status != Z_STREAM_END) fail(source);
     return result;

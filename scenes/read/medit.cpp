@@ -62,6 +62,7 @@ void read_tetrahedra(Scanner& in, Mesh& mesh, std::size_t more) {
 void skip_section(Scanner& in, std::string_view keyword, const MeshReading& reading, Mesh& mesh) {
     if (is_foreign(keyword)) {
         const auto n = in.get<std::uint64_t>("a count");
+        in.check_count(n, 1, 0, "cells");
         const bool is_tetrahedra = keyword.starts_with("Tetrahedra");
         if (n > 0 && (is_tetrahedra || !reading.only_tetrahedra))
             in.fail(fmt::format("cells of type {} are not linear tetrahedra", in_quotes(keyword)),

@@ -116,9 +116,12 @@ fs::path unpacked_name(const fs::path& path) {
     return path.extension() == ".gz" ? fs::path(path).replace_extension() : path;
 }
 
-/// Reads a TetGen mesh. `path` is its .node file when `is_node` is true, else its .ele file.
+/// Reads a TetGen mesh. `path` is its .node file when `is_node` is true, else its .ele file; gzip may have
+/// compressed either.
 Mesh read_pair(const fs::path& path, bool is_node, const MeshReading& reading) {
-    const auto partner = fs::path(path).replace_extension(is_node ? ".ele" : ".node");
+    auto partner = unpacked_name(path).replace_extension(is_node ? ".ele" : ".node");
+    if (const auto packed = fs::path(partner.string() + ".gz"); !fs::exists(partner) && fs::exists(packed))
+        partner = packed;
     const auto bytes = load(path);
     if (!fs::exists(partner))
         throw InputError(fmt::format("{}: missing, the partner of {}; put both into one folder",
@@ -136,6 +139,7 @@ void read::require_tetrahedra(const Mesh& mesh, const std::string& source) {
 }
 
 Mesh parse_mesh(std::string_view bytes, const std::string& source, const MeshReading& reading) {
+    if (read::is_gzip(bytes)) return parse_mesh(read::gunzipped(bytes, source), source, reading);
     if (bytes.empty()) throw InputError(fmt::format("{}: the file is empty; export it again", source));
     const auto suffix = suffix_of(unpacked_name(source).string());
     if (suffix == ".node" || suffix == ".ele")
@@ -149,12 +153,17 @@ Mesh parse_mesh(std::string_view bytes, const std::string& source, const MeshRea
     return mesh;
 }
 
-Mesh read_mesh(const std::string& path, const MeshReading& reading) {
+Mesh parse_file(const std::string& path, const MeshReading& reading) {
     const auto unpacked = unpacked_name(path);
-    const auto suffix = suffix_of(path);
+    const auto suffix = suffix_of(unpacked.string());
     const bool pair = suffix == ".node" || suffix == ".ele";
     Mesh mesh = pair ? read_pair(path, suffix == ".node", reading) : parse_mesh(load(path), path, reading);
     mesh.name = unpacked.stem().string();
+    return mesh;
+}
+
+Mesh read_mesh(const std::string& path, const MeshReading& reading) {
+    auto mesh = parse_file(path, reading);
     complete_mesh(mesh, path, reading);
     mesh.findings.coincident = count_coincident(mesh);
     return mesh;

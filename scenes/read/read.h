@@ -8,10 +8,14 @@
 
 namespace tandem {
 
-/// Parses the bytes of one mesh file. The content determines the format, otherwise the suffix of `source`.
-/// Does not call complete_mesh. Throws InputError `source:line: what; what to do` (binary: `source: byte N:
+/// Parses the bytes of one mesh file, also of one that gzip has compressed. The content determines the
+/// format, otherwise the suffix of `source`. Does not call complete_mesh. Throws InputError `source:line:
+/// what; what to do` (binary: `source: byte N:
 /// ...`).
 Mesh parse_mesh(std::string_view bytes, const std::string& source, const MeshReading& reading = {});
+
+/// Reads a mesh file, as read_mesh() does, without completing the mesh: only vertices and tetrahedra.
+Mesh parse_file(const std::string& path, const MeshReading& reading = {});
 
 /// Parses a TetGen pair, numbered from 0 or 1. Does not call complete_mesh. Throws InputError like
 /// parse_mesh.

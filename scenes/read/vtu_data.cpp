@@ -2,6 +2,7 @@
 #include "scenes/read/vtu_data.h"
 
 #include "base/base64.h"
+#include "base/memory.h"
 
 #include <algorithm>
 #include <charconv>
@@ -69,7 +70,8 @@ VtuData::VtuData(const Xml& xml, const Tag& file) : xml_(xml) {
     compressor_ = std::ranges::find(compressors, compressor, &Compressor::name);
     if (compressor_ == compressors.end())
         xml.fail(file.at, fmt::format("compressor {} is not supported", in_quotes(compressor)),
-                 "save with vtkZLibDataCompressor or without compression");
+                 "save with vtkZLibDataCompressor, vtkLZ4DataCompressor, vtkLZMADataCompressor or without "
+                 "compression");
 }
 
 void VtuData::set_appended(const Tag& tag) {
@@ -164,6 +166,9 @@ std::string VtuData::inflate(const Block& block) const {
     if (end > most || (parts > 1 && whole > most / (parts - 1)))
         xml_.fail(block.tag, fmt::format("{} bytes cannot contain {} parts of {}", data.size(), parts, whole),
                   "copy or export the file again");
+    refuse_beyond_memory(fmt::format("{}: an array", xml_.source()),
+                         static_cast<double>(whole) * static_cast<double>(parts - 1)
+                             + static_cast<double>(end));
     std::string result;
     std::size_t at = header.size();
     for (std::size_t i = 0; i < parts; ++i) {

@@ -80,7 +80,7 @@ Scene recreate_scene(const Recording& recording, const MeshReading& reading) {
     if (scene.digest != header.scene_digest || recorded_bodies(scene) != header.bodies)
         fail(
             fmt::format("was recorded from a scene with digest {:016x}, but {} now has {:016x}; restore that "
-                        "scene or record again",
+                        "scene, give --duplicates and --weld as its simulation had them, or record again",
                         header.scene_digest, header.specification, scene.digest));
     return scene;
 }

@@ -3,11 +3,15 @@
 #include "tests/loader/files.h"
 #include "base/error.h"
 #include "scenes/mesh.h"
+#include "scenes/read/read.h"
 #include "scenes/refine.h"
+#include "scenes/scene.h"
 
 #include <fmt/format.h>
+#include <fstream>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sstream>
 #include <zlib.h>
 
 namespace tandem::loader {
@@ -141,16 +145,53 @@ TEST(Topology, GmshVersion1) {
     expect_failure("end.msh", replaced(text, "$ENDNOD\n", ""), ":8", "$ENDNOD is missing");
 }
 
-TEST(Topology, GzipIsUnpacked) {
-    const auto path = folder() + "/packed.mesh.gz";
-    const auto text = medit(five, pair);
+/// Writes a text as gzip does, with `padding` zeros behind it. Returns the path.
+std::string packed(const std::string& name, std::string_view text, std::size_t padding = 0) {
+    const auto path = folder() + "/" + name;
     auto* file = gzopen(path.c_str(), "wb");
     gzwrite(file, text.data(), static_cast<unsigned>(text.size()));
     gzclose(file);
+    std::ofstream(path, std::ios::app | std::ios::binary) << std::string(padding, '\0');
+    return path;
+}
+
+TEST(Topology, GzipIsUnpacked) {
+    const auto path = packed("packed.mesh.gz", medit(five, pair), 3);
     const auto mesh = read_mesh(path);
     EXPECT_EQ(mesh.tetrahedra, pair);
     EXPECT_EQ(mesh.name, "packed");
+    std::ostringstream bytes;
+    bytes << std::ifstream(path, std::ios::binary).rdbuf();
+    EXPECT_EQ(parse_mesh(bytes.str(), "bytes.mesh").tetrahedra, pair);
     expect_failure("cut.mesh.gz", "\x1f\x8b\x08", ": ", "the gzip data are damaged");
+    expect_failure("more.mesh.gz", bytes.str() + "x", ": ", "the gzip data are damaged");
+}
+
+TEST(Topology, EitherHalfOfTetGenMayBePacked) {
+    const auto packed_node = packed("halves.node.gz", "5 3\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n4 1 1 1\n");
+    const auto plain_ele = write_file("halves.ele", "2 4\n0 0 1 2 3\n1 4 3 2 1\n");
+    for (const auto& path : {packed_node, plain_ele}) {
+        EXPECT_EQ(read_mesh(path).tetrahedra, pair) << path;
+        EXPECT_EQ(read_mesh(path).name, "halves");
+    }
+}
+
+/// The tolerance is in the unit of the scene, and meshes without a file are connected too.
+TEST(Topology, DescriptionsWeldAfterTheirScale) {
+    auto torn = five;
+    torn.push_back({0, 0, 0.05});
+    write_file("torn.mesh", medit(torn, {pair[0], {4, 3, 2, 5}}));
+    const auto welded = [](const std::string& mesh, double tolerance) {
+        const auto text =
+            fmt::format(R"({{"meshes": {{"m": {}}}, "bodies": [{{"mesh": "m"}}], "frames": 1}})", mesh);
+        return make_scene(write_file("scaled.json", text), {.weld = tolerance})
+            .meshes.front()
+            .findings.welded;
+    };
+    EXPECT_EQ(welded(R"({"file": "torn.mesh", "scale": 10})", 0.1), 0u);
+    EXPECT_EQ(welded(R"({"file": "torn.mesh", "scale": 10})", 0.6), 1u);
+    EXPECT_EQ(welded(R"({"file": "torn.mesh"})", 0.1), 1u);
+    EXPECT_GT(welded(R"({"box": [1, 1, 1]})", 1.1), 0u);
 }
 
 TEST(Topology, FormatsWithoutAReaderAreNamed) {

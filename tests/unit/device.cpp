@@ -17,7 +17,8 @@ TEST(Registry, HasHostAndOpencl) {
     EXPECT_EQ(backends[0].devices.size(), 1u);
     EXPECT_GE(backends[1].devices.size(), 1u) << backends[1].reason;
     EXPECT_EQ(backends[2].name, "cuda");
-    for (const auto& backend : backends) EXPECT_EQ(backend.devices.empty(), !backend.reason.empty());
+    // With devices, a reason can name a driver that fails beside them.
+    for (const auto& backend : backends) EXPECT_FALSE(backend.devices.empty() && backend.reason.empty());
 }
 
 TEST(Device, CopiesUploadsAtOnceAndReadsBack) {

@@ -80,7 +80,7 @@ TEST_F(RecordingScene, OfADescription) {
     EXPECT_THAT(failure_of([&] { make_scene(file_); }),
                 MatchesRegex(
                     ".*drift.frames: was recorded from a scene with digest [0-9a-f]+, but .*two.json now has "
-                    "[0-9a-f]+; restore that scene or record again"));
+                    "[0-9a-f]+; restore that scene, give --duplicates .* or record again"));
     std::filesystem::remove(path("two.json"));
     EXPECT_THAT(failure_of([&] { make_scene(file_); }),
                 MatchesRegex(".*drift.frames: its scene cannot be made again: .*two.json: cannot be read.*"));
