@@ -28,10 +28,11 @@ void CellSampler::round(std::size_t samples) {
     }
 }
 
-/// Removes the samples of a round that did not end. They have no breakdown, and no condition after them.
+/// Removes what a round that did not end has stored: samples, and conditions when it stopped in its breakdown.
 void CellSampler::drop_round() {
-    std::erase_if(state_.measurement.samples,
-                  [&](const TimedReplay& sample) { return sample.round >= state_.rounds; });
+    const auto is_of_it = [&](const auto& item) { return item.round >= state_.rounds; };
+    std::erase_if(state_.measurement.samples, is_of_it);
+    std::erase_if(state_.measurement.conditions, is_of_it);
 }
 
 std::size_t CellSampler::samples_a_round() const {

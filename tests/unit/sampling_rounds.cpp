@@ -199,5 +199,19 @@ TEST_F(SamplingRounds, AnInterruptedRoundOrCheckLeavesNothing) {
     EXPECT_EQ(sampler.state().rounds, m.breakdowns.size());
 }
 
+/// A round stores its conditions after its samples and before its breakdown.
+TEST_F(SamplingRounds, ARoundInterruptedInItsBreakdownLeavesNothing) {
+    LocalSampler sampler(cells_.front(), scene_, range_, references_);
+    const auto& m = sampler.measurement();
+    sampler.stop_when([&] { return m.breakdowns.size() == 1 && m.conditions.size() == 2; });
+    sampler.check(check_);
+    sampler.round(1);
+    EXPECT_THROW(sampler.round(2), Interrupted);
+    EXPECT_THAT(m.rounds(), ElementsAre(0));
+    EXPECT_EQ(m.conditions.size(), 1u);
+    EXPECT_EQ(m.breakdowns.size(), 1u);
+    EXPECT_EQ(sampler.state().rounds, 1u);
+}
+
 } // namespace
 } // namespace tandem
