@@ -221,7 +221,6 @@ void ContactFinder::find(const Frame& frame, std::vector<ContactPoint>& contacts
 ContactSearch ContactFinder::take() { return std::exchange(search_, {}); }
 
 int simulate_command(const SimulateOptions& options) {
-    refuse_no_output(options);
     const auto scene = open_scene(options);
     report_findings(scene);
     // The tools for pictures are checked first, before hours of simulation.
@@ -233,6 +232,7 @@ int simulate_command(const SimulateOptions& options) {
     const auto cell = only_cell(request, backends);
     refuse_settings(cell.settings);
     check_coordinates(cell, scene, scene.frame(0));
+    refuse_no_output(options); // last, so that a wrong scene or setting is named first
     std::optional<Interrupt> interrupt(std::in_place, Interrupt::stopping);
     Simulation simulation(scene);
     // Opened before the recording is made: if this fails, no recording remains to block a second try.
