@@ -28,7 +28,7 @@ void check_arithmetic(const Settings& settings, const DeviceInfo& info) {
                         info.id));
     if (geometry.precision == Precision::fp64 && !info.has_double)
         throw InputError(fmt::format("setting precision=double is impossible on {}; choose float", info.id));
-    if (contact_settings_of(settings).decision != DecisionPrecision::fp32 && !info.has_double)
+    if (has_verdicts(contact_settings_of(settings).decision) && !info.has_double)
         throw InputError(
             fmt::format("setting decision={} is impossible on {}, which has no double; choose fp32",
                         settings.text("decision"), info.id));

@@ -30,7 +30,7 @@ DEVICE void hand_out(LOCAL const uint* found, LOCAL uint* group, GLOBAL uint* op
 }
 
 // Processes pairs first..`pair_capacity` - 1, at most OPEN_PAIRS of them, up to the count in the status.
-// `verdicts` are read only if DECIDED; pairs not known to be apart then count as meeting.
+// `verdicts` are as in KNOWN_APART; with DECIDED, pairs not known to be apart count as meeting.
 KERNEL void certify_pairs(GLOBAL const uint* found, uint first, uint pair_capacity, GLOBAL const uint* owners,
                           GLOBAL const real* poses, GLOBAL const uint* tetrahedra,
                           GLOBAL const real* vertices, GLOBAL const uchar* boundary,
@@ -56,7 +56,7 @@ KERNEL void certify_pairs(GLOBAL const uint* found, uint first, uint pair_capaci
         NO_UNROLL for (uint i = LOCAL_ID; i < group[GROUP_ASKED]; i += GROUP_SIZE) {
             const uint index = asked[i];
             int edge = -1;
-            const int apart = DECIDED && verdicts[index] == VERDICT_APART;
+            const int apart = KNOWN_APART(verdicts, index);
             const int state = apart ? REJECTED : try_certificate(&all, index, &edge);
             count_state(state, group);
             if (state == OPEN)

@@ -37,6 +37,12 @@ constexpr unsigned boundaries_needed(ContactRule rule) {
     return (traits & TANDEM_BOTH_BOUNDARY) != 0 ? 2 : (traits & TANDEM_ONE_BOUNDARY) != 0 ? 1 : 0;
 }
 
+/// Whether kernels that compute in double decide pairs, all or those without a certificate, before contacts
+/// are made.
+constexpr bool has_verdicts(DecisionPrecision decision) {
+    return decision != DecisionPrecision::fp32 && decision != DecisionPrecision::none;
+}
+
 /// The tetrahedra that sessions with these settings walk. With output=contacts, a rule whose contacts need
 /// boundary faces of both tetrahedra leaves out the others. residency=published walks everything.
 Walked walked_of(const Settings& settings);

@@ -34,21 +34,23 @@ ContactStage::ContactStage(const Bodies& bodies, const ContactSettings& settings
     define(defines, parameters::pair_layout, bodies_.pair_layout());
     define(defines, parameters::contact_rule, settings.rule);
     defines["BOUNDARY_NEEDED"] = std::to_string(boundaries_needed(settings.rule));
-    if (settings.decision != DecisionPrecision::fp32)
-        decision_ = std::make_unique<DecisionStage>(bodies, settings, shape);
+    if (has_verdicts(settings.decision)) decision_ = std::make_unique<DecisionStage>(bodies, settings, shape);
+    const auto decided = [&](bool by_verdicts) {
+        return settings.decision == DecisionPrecision::none ? "2" : by_verdicts ? "1" : "0";
+    };
     const auto& last = kernel_source("algorithms/narrow_phase/contacts.cl");
     if (launches == Launches::apart) {
-        defines["DECIDED"] = decision_ && !decides_open() ? "1" : "0";
+        defines["DECIDED"] = decided(decision_ && !decides_open());
         certify_ =
             device.compile(kernel_source("algorithms/narrow_phase/certify.cl"), "certify_pairs", defines);
-        defines["DECIDED"] = decision_ ? "1" : "0";
+        defines["DECIDED"] = decided(decision_ != nullptr);
         separate_ =
             device.compile(kernel_source("algorithms/narrow_phase/separate.cl"), "separate_pairs", defines);
         defines["AT_ONCE"] = "0";
         generate_ = device.compile(last, "generate_contacts", defines);
     }
     if (launches == Launches::at_once || device.info().is_gpu) {
-        defines["DECIDED"] = decision_ ? "1" : "0";
+        defines["DECIDED"] = decided(decision_ != nullptr);
         defines["AT_ONCE"] = "1";
         at_once_ = device.compile(last, "generate_contacts", defines);
     }

@@ -49,7 +49,7 @@ private:
     std::optional<std::uint64_t> expected_;
     GrowableBuffer waiting_; ///< lists of waiting.clh, one column each: LIST_OPEN, LIST_MEETING
     Buffer nothing_;         ///< for kernels that do not read the argument
-    std::unique_ptr<DecisionStage> decision_; ///< null for decision=fp32, where certify and separate decide
+    std::unique_ptr<DecisionStage> decision_; ///< null unless has_verdicts()
 };
 
 } // namespace tandem

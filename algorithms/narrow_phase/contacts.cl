@@ -97,7 +97,7 @@ KERNEL void generate_contacts(GLOBAL const uint* found, uint first, uint pair_ca
             const uint index = AT_ONCE ? (uint)(start + LOCAL_ID) : meeting[start + LOCAL_ID];
             int state = MEETING;
             if (AT_ONCE) {
-                const int apart = DECIDED && verdicts[index] == VERDICT_APART;
+                const int apart = KNOWN_APART(verdicts, index);
                 state = try_pair(&all, index, apart, &pairs[LOCAL_ID].pair);
                 count_state(state, group);
             }

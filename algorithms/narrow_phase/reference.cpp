@@ -72,7 +72,7 @@ Corners<double> widened(const Corners<Real>& corners) {
 template<class Real>
 bool decided_apart(const Corners<Real>& a, const Corners<Real>& b, DecisionPrecision decision,
                    ContactCounts& counts) {
-    if (decision == DecisionPrecision::fp32) return false;
+    if (!has_verdicts(decision)) return false;
     unsigned verdict = 0;
     if (decision != DecisionPrecision::fp64) verdict = certificate(a, b);
     if (verdict == 0 && decision != DecisionPrecision::fp64) verdict = certain_verdict(a, b);

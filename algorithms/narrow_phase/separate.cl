@@ -5,8 +5,8 @@
 #include "algorithms/narrow_phase/trial.clh"
 #include "algorithms/narrow_phase/waiting.clh"
 
-// `first`: that of certify_pairs; the words of `open` are relative to it. `verdicts` are read only if
-// DECIDED; pairs not known to be apart then count as meeting.
+// `first`: that of certify_pairs; the words of `open` are relative to it. `verdicts` are as in KNOWN_APART;
+// with DECIDED, pairs not known to be apart count as meeting.
 KERNEL void separate_pairs(GLOBAL const uint* found, uint first, GLOBAL const uint* owners,
                            GLOBAL const real* poses, GLOBAL const uint* tetrahedra,
                            GLOBAL const real* vertices, GLOBAL const uchar* verdicts, GLOBAL const uint* open,
@@ -23,7 +23,7 @@ KERNEL void separate_pairs(GLOBAL const uint* found, uint first, GLOBAL const ui
         if (start + LOCAL_ID < count) {
             const uint word = open[start + LOCAL_ID];
             index = first + PAIR_OF_OPEN(word);
-            const int apart = DECIDED && verdicts[index] == VERDICT_APART;
+            const int apart = KNOWN_APART(verdicts, index);
             state = apart ? REJECTED : try_all(&all, index, EDGE_OF_OPEN(word), pairs + LOCAL_ID);
         }
         count_state(state, group);

@@ -130,7 +130,8 @@ enum class DecisionPrecision {
     fp32,    ///< separating axes in the cell's precision; without one the pair collides
     recheck, ///< a certified filter in the cell's precision, then double for undecided pairs
     fp64,    ///< the certified decision in double for all pairs
-    exact    ///< as recheck, then exact arithmetic on the host for undecided pairs
+    exact,   ///< as recheck, then exact arithmetic on the host for undecided pairs
+    none     ///< no pair is rejected, as in the contact kernel of the paper's code
 };
 
 } // namespace tandem

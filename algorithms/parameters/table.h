@@ -116,10 +116,12 @@ inline constexpr Setting<DecisionPrecision> decision{
     {{"fp32", DecisionPrecision::fp32},
      {"recheck", DecisionPrecision::recheck},
      {"fp64", DecisionPrecision::fp64},
-     {"exact", DecisionPrecision::exact}},
+     {"exact", DecisionPrecision::exact},
+     {"none", DecisionPrecision::none}},
     "",
     "how to decide whether a pair collides: fp32: separating axes in the cell's precision; recheck: a "
-    "certified filter, then double; fp64: double; exact: as recheck, then exact arithmetic on the host"};
+    "certified filter, then double; fp64: double; exact: as recheck, then exact arithmetic on the host; "
+    "none: no pair is rejected, as in the paper's code"};
 
 inline constexpr Setting<Broad> broad{
     "broad",

@@ -28,7 +28,8 @@ void CellSampler::round(std::size_t samples) {
     }
 }
 
-/// Removes what a round that did not end has stored: samples, and conditions when it stopped in its breakdown.
+/// Removes what a round that did not end has stored: samples, and conditions when it stopped in its
+/// breakdown.
 void CellSampler::drop_round() {
     const auto is_of_it = [&](const auto& item) { return item.round >= state_.rounds; };
     std::erase_if(state_.measurement.samples, is_of_it);

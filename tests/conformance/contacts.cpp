@@ -108,6 +108,10 @@ TEST_P(ContactConformance, EveryDecisionEqualsTheReferenceInEveryResidency) {
                                  {"contact_rule", "sat"},
                                  {"residency", "published"},
                                  {"seed_threshold", "1"}});
+    const auto all = expect_right("chunked", {{"decision", "none"}, {"contact_rule", "published"}});
+    EXPECT_EQ(all.rejected, 0u);
+    const SettingTexts rejecting{{"contact_rule", "published"}, {"residency", "published"}};
+    EXPECT_GE(all.contacts, expect_right("gproximity", rejecting).contacts);
 }
 
 TEST_P(ContactConformance, RulesThatUseTheBoundaryEqualTheReference) {

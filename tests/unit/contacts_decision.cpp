@@ -78,8 +78,9 @@ std::map<std::string, std::vector<OraclePair>> families() {
 
 TEST(ContactsDecision, NoDecisionRejectsIntersectingPairs) {
     for (const auto& [name, pairs] : families())
-        for (const auto decision : {DecisionPrecision::fp32, DecisionPrecision::recheck,
-                                    DecisionPrecision::fp64, DecisionPrecision::exact})
+        for (const auto decision :
+             {DecisionPrecision::fp32, DecisionPrecision::recheck, DecisionPrecision::fp64,
+              DecisionPrecision::exact, DecisionPrecision::none})
             EXPECT_EQ(score(pairs, decision).missed, 0u) << name << " " << static_cast<int>(decision);
 }
 

@@ -82,10 +82,12 @@ TEST(Settings, DecisionsWithCertaintyNeedDouble) {
                   "setting decision=" + decision
                       + " is impossible on opencl:9, which has no double; choose fp32");
     EXPECT_EQ(algorithm("chunked").fitted(with({}), info)[parameters::decision], DecisionPrecision::fp32);
+    EXPECT_EQ(algorithm("chunked").fitted(with({{"decision", "none"}}), info)[parameters::decision],
+              DecisionPrecision::none);
     EXPECT_THAT(message_of([] {
                     with({{"decision", "fp16"}});
                 }),
-                HasSubstr("choose one of fp32, recheck, fp64, exact"));
+                HasSubstr("choose one of fp32, recheck, fp64, exact, none"));
     EXPECT_THAT(message_of([] {
                     with({{"contact_rule", "clop"}});
                 }),
