@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "base/text_lines.h"
 
-#include "base/standard_streams.h"
-
 #include <algorithm>
 #include <cstdint>
 #include <fmt/format.h>
@@ -73,14 +71,13 @@ std::vector<std::string> wrap(std::string_view text, std::size_t width) {
     return lines;
 }
 
-std::string paragraph(std::string_view text, std::size_t indent) {
-    const auto columns = output_columns();
-    const auto first = wrap(text, columns).front();
+std::string paragraph(std::string_view text, std::size_t indent, std::size_t width) {
+    const auto first = wrap(text, width).front();
     const auto rest = text.substr(first.size());
     const auto rest_begins = rest.find_first_not_of(' ');
     std::string result = first + "\n";
     if (rest_begins == std::string_view::npos) return result;
-    for (const auto& line : wrap(rest.substr(rest_begins), columns - indent))
+    for (const auto& line : wrap(rest.substr(rest_begins), width - indent))
         result += std::string(indent, ' ') + line + "\n";
     return result;
 }

@@ -16,9 +16,9 @@ std::size_t width_of(std::string_view text);
 /// the word is longer than a line. Returns at least one line.
 std::vector<std::string> wrap(std::string_view text, std::size_t width);
 
-/// wrap() to lines of standard output. Lines after the first begin with `indent` spaces. Each line ends with
-/// a newline.
-std::string paragraph(std::string_view text, std::size_t indent);
+/// wrap() with lines after the first that begin with `indent` spaces, all of at most `width` characters. Each
+/// line ends with a newline.
+std::string paragraph(std::string_view text, std::size_t indent, std::size_t width);
 
 /// The text, or its first `width` - 1 characters and "…" if it has more than `width`.
 std::string shortened(std::string_view text, std::size_t width);

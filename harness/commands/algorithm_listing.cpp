@@ -111,7 +111,9 @@ Json algorithm_json(const Traversal& traversal, bool baseline) {
 }
 
 /// Prints a text wrapped to a terminal. Lines after the first begin at column `indent`.
-void put_lines(const std::string& text, std::size_t indent) { put_text(paragraph(text, indent)); }
+void put_lines(const std::string& text, std::size_t indent) {
+    put_text(paragraph(text, indent, output_columns()));
+}
 
 void print_heading(const Traversal& traversal, bool baseline) {
     put_lines(fmt::format("{}{}: {}", traversal.name(),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/profile/output.h"
 #include "harness/record/table/columns.h"
+#include "base/standard_streams.h"
 #include "base/text_lines.h"
 
 #include <algorithm>
@@ -114,7 +115,7 @@ std::string ceilings_text(const Profile& profile) {
                     profile.ceilings_from, digits(l.bytes_per_s * 1e-9), digits(l.cached_bytes_per_s * 1e-9),
                     digits(l.cached_bytes * 1e-6), digits(l.operations_per_s * 1e-9),
                     digits(l.launch_s * 1e6)),
-        2);
+        2, output_columns());
 }
 
 } // namespace

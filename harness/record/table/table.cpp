@@ -3,6 +3,7 @@
 
 #include "harness/sampling/ranks/rank_team.h"
 #include "harness/sampling/statistics.h"
+#include "base/standard_streams.h"
 #include "base/text_lines.h"
 #include "harness/record/table/throughput.h"
 
@@ -255,8 +256,8 @@ std::string devices_table(const Row& row, TableFormat format) {
         columns.push_back({std::string(stage_names[static_cast<std::size_t>(stage)]), millisecond_texts(ms)});
     }
     const bool is_markdown = format == TableFormat::markdown;
-    return fmt::format("{}{}{}\n", paragraph("devices of " + describe(*row.cell), 2), is_markdown ? "\n" : "",
-                       in_columns(devices, "a frame", columns, format));
+    return fmt::format("{}{}{}\n", paragraph("devices of " + describe(*row.cell), 2, output_columns()),
+                       is_markdown ? "\n" : "", in_columns(devices, "a frame", columns, format));
 }
 
 /// With the 95 % interval for at least two rounds. "≈" precedes the ratio when the interval contains 1; "-"
@@ -297,7 +298,7 @@ std::string ratios_to(const Row& base, std::span<const Row> rows, TableFormat fo
         ratios("write", stage(Stage::write)),
         ratios("launches", [](const Measurement& m) { return static_cast<double>(launches_of(m)); })};
     const bool is_markdown = format == TableFormat::markdown; // in which a line before a table joins it
-    return fmt::format("{}{}{}\n", paragraph("times as long as " + describe(*base.cell), 2),
+    return fmt::format("{}{}{}\n", paragraph("times as long as " + describe(*base.cell), 2, output_columns()),
                        is_markdown ? "\n" : "", in_columns(names, "", columns, format));
 }
 
@@ -323,7 +324,8 @@ std::string result_tables(std::span<const Row> rows, const std::vector<Verdict>&
     text += stages_table(rows, names, style.format) + "\n";
     for (const auto& row : rows) text += devices_table(row, style.format);
     text += ratio_tables(rows, style.format);
-    for (const auto& verdict : verdicts) text += paragraph(verdict_sentence(verdict, rows, names), 2);
+    for (const auto& verdict : verdicts)
+        text += paragraph(verdict_sentence(verdict, rows, names), 2, output_columns());
     return text;
 }
 
