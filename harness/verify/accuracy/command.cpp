@@ -135,7 +135,9 @@ void print_row(const Cell& cell, const Measurement& m) {
 }
 
 /// Measures all cells on one scene, until a record cannot be written or an interrupt. Returns the exit code.
-int measure_scene(const RunOptions& options, const std::vector<Cell>& cells, RecordFile& file) {
+/// `scenes_after`: number of scenes that follow, for the estimate of the time left.
+int measure_scene(const RunOptions& options, const std::vector<Cell>& cells, RecordFile& file,
+                  std::size_t scenes_after) {
     auto own = options;
     auto scene = open_scene(own);
     report_findings(scene);
@@ -160,7 +162,7 @@ int measure_scene(const RunOptions& options, const std::vector<Cell>& cells, Rec
         if (result.measured && m.errors) print_row(*result.cell, m);
     };
     // Measure cell by cell, not in rounds: rows appear early, and times are not compared between cells.
-    auto later = job.cells.size();
+    auto later = job.cells.size() * (1 + scenes_after);
     for (const auto& cell : job.cells)
         measure_cells(job, {&cell, 1}, references, measuring, file, {progress, ended, --later});
     put("\n");
@@ -193,13 +195,16 @@ int accuracy_command(const AccuracyOptions& options) {
     RecordFile file(records);
     std::optional<Interrupt> interrupt(std::in_place, Interrupt::stopping);
     int code = 0;
+    std::vector<std::string> expanded;
     for (const auto& given : scenes)
-        for (const auto& scene : expand(given, options.run.degenerate)) {
-            auto own = options.run;
-            own.scene = scene;
-            code = std::max(code, measure_scene(own, cells, file));
-            if (file.failed() || Interrupt::asked()) return code;
-        }
+        for (auto& scene : expand(given, options.run.degenerate)) expanded.push_back(std::move(scene));
+    auto scenes_after = expanded.size();
+    for (const auto& scene : expanded) {
+        auto own = options.run;
+        own.scene = scene;
+        code = std::max(code, measure_scene(own, cells, file, --scenes_after));
+        if (file.failed() || Interrupt::asked()) return code;
+    }
     put("ms/frame: the whole frame; ratio: candidates per intersecting pair; errors of contacts are 99th "
         "percentiles;\n"
         "u: half a unit in the last place of 1; L: the longest edge; volume: relative error of the volume of "
