@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """metadata.py PROGRAM SOURCE: what archives and search engines read: .zenodo.json and codemeta.json agree with CITATION.cff (command_line.py compares it
-with CITATION.bib), and results/croissant.json is as scripts/croissant makes it."""
+with CITATION.bib), and results/croissant.json is as scripts/croissant makes it. Lists of packages name the same libraries."""
 import json
 import re
 import unittest
@@ -46,6 +46,15 @@ class Metadata(unittest.TestCase):
         plan = next(one for one in dataset["recordSet"] if one["@id"] == "cells/h100/after.jsonl")
         self.assertIn("scene_digest", [field["name"] for field in plan["field"]])
         self.assertTrue(all(field["description"] for one in dataset["recordSet"] for field in one["field"]))
+
+    def test_lists_of_packages_have_every_library(self):
+        """scripts/gpu/fetch is for machines without a network, where a missing library shows too late."""
+        setup, fetch = ((SOURCE / "scripts" / name).read_text() for name in ("setup", "gpu/fetch"))
+        needed = {"libboost1.74-dev" if name == "libboost-dev" else name
+                  for name in re.findall(r"\b[a-z0-9.-]+-dev\b", setup.partition("packages=(")[2].partition(")")[0])}
+        self.assertGreater(len(needed), 9)
+        fetched = set(re.findall(r"[a-z0-9.-]+", fetch.partition("packages=(")[2].partition(")")[0]))
+        self.assertEqual(needed - fetched, set())
 
 
 if __name__ == "__main__":
