@@ -56,8 +56,8 @@ IncidenceTable incidence_of(std::span<const std::uint32_t> tetrahedra, std::size
         for (const auto vertex : own.first(count))
             for (const auto& other : from(by_vertex[vertex], tile)) partners.push_back(other.tile);
         std::ranges::sort(partners);
-        const auto repeated = std::ranges::unique(partners);
-        partners.erase(repeated.begin(), repeated.end());
+        // No std::ranges::unique: clang 14 does not compile the one of g++ 12.
+        partners.erase(std::unique(partners.begin(), partners.end()), partners.end());
         for (std::size_t i = 0; i < partners.size(); ++i) pair_of[partners[i]] = first + i;
         append(table.partners, partners);
         table.masks.resize(mask_bits * table.partners.size());

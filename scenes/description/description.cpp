@@ -174,8 +174,9 @@ void read_never_meet(const Json& json, const JsonLocation& location, Scene& scen
         scene.never_meet.push_back({std::min(a, b), std::max(a, b)});
     }
     std::ranges::sort(scene.never_meet);
-    const auto repeated = std::ranges::unique(scene.never_meet);
-    scene.never_meet.erase(repeated.begin(), repeated.end());
+    // No std::ranges::unique: clang 14 does not compile the one of g++ 12.
+    scene.never_meet.erase(std::unique(scene.never_meet.begin(), scene.never_meet.end()),
+                           scene.never_meet.end());
 }
 
 /// Computed on demand, since a scripted scene keeps no frames in memory.
