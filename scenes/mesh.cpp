@@ -53,8 +53,9 @@ std::vector<Duplicate> duplicates_of(const Mesh& mesh, std::span<const Face> fac
             if (opposite >= face.vertices[2]) same.push_back({opposite, face.tetrahedron});
         }
         std::ranges::sort(same);
-        const auto repeated = std::ranges::unique(same); // a tetrahedron that has its largest vertex twice
-        same.erase(repeated.begin(), repeated.end());
+        // A tetrahedron that has its largest vertex twice. No std::ranges::unique: clang 14 does not compile
+        // the one of g++ 12.
+        same.erase(std::unique(same.begin(), same.end()), same.end());
         for (std::size_t i = 1, first = 0; i < same.size(); ++i) {
             if (same[i][0] != same[first][0]) first = i;
             if (i != first) found.push_back({same[i][1], same[first][1]});
@@ -90,11 +91,12 @@ void flag_boundary(Mesh& mesh, std::span<const Face> faces, std::span<const Dupl
 
 /// Fills welded, merged and boundary.
 void connect(Mesh& mesh, const std::string& source, const MeshReading& reading) {
+    mesh.reading = reading;
     mesh.welded.clear();
     mesh.merged.clear();
     mesh.findings.welded = 0;
     if (reading.weld) {
-        mesh.welded = welded_vertices(mesh.vertices, *reading.weld);
+        mesh.welded = welded_vertices(mesh.vertices, checked_weld(*reading.weld));
         for (std::uint32_t v = 0; v < mesh.welded.size(); ++v)
             mesh.findings.welded += mesh.welded[v] == v ? 0 : 1;
         if (mesh.findings.welded == 0) mesh.welded.clear();
@@ -105,7 +107,7 @@ void connect(Mesh& mesh, const std::string& source, const MeshReading& reading) 
     if (reading.duplicates == Duplicates::reject && !duplicates.empty())
         throw InputError(fmt::format(
             "{}: {} of {} tetrahedra have the vertices of an earlier one, such as {} those of {}; "
-            "repair the mesh, or choose --duplicates merge or keep",
+            "repair the mesh, or choose merge or keep for duplicates",
             source, duplicates.size(), mesh.tetrahedra.size(), duplicates[0].tetrahedron,
             duplicates[0].first));
     flag_boundary(mesh, faces, duplicates);
@@ -143,21 +145,21 @@ void complete_mesh(Mesh& mesh, const std::string& source, const MeshReading& rea
     connect(mesh, source, reading);
 }
 
-std::string findings_text(const Mesh& mesh) {
+std::string findings_text(const Mesh& mesh, std::string_view weld) {
     const auto& found = mesh.findings;
     std::vector<std::string> parts;
     const auto add = [&](std::size_t count, std::string_view text) {
-        if (count > 0) parts.push_back(fmt::format(fmt::runtime(text), count));
+        if (count > 0) parts.push_back(fmt::format("{} {}", count, text));
     };
     add(found.duplicates, mesh.merged.empty()
-                              ? "{} tetrahedra have the vertices of an earlier one and are kept"
-                              : "{} tetrahedra have the vertices of an earlier one and take no part");
+                              ? "tetrahedra have the vertices of an earlier one and are kept"
+                              : "tetrahedra have the vertices of an earlier one and take no part");
     if (mesh.welded.empty())
-        add(found.coincident, "{} vertices lie where an earlier one lies (--weld 0 joins them)");
-    add(found.welded, "{} vertices are welded to an earlier one");
-    add(found.ghosts, "{} ghost cells are left out");
-    add(found.reduced, "{} tetrahedra of higher order are read by their corners");
-    add(found.other_cells, "{} volume cells that are not tetrahedra are left out");
+        add(found.coincident, fmt::format("vertices lie where an earlier one lies ({} joins them)", weld));
+    add(found.welded, "vertices are welded to an earlier one");
+    add(found.ghosts, "ghost cells are left out");
+    add(found.reduced, "tetrahedra of higher order are read by their corners");
+    add(found.other_cells, "volume cells that are not tetrahedra are left out");
     return fmt::format("{}", fmt::join(parts, "; "));
 }
 

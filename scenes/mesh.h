@@ -38,6 +38,7 @@ struct Mesh {
     /// By vertex, the first of the vertices that are one for the topology; empty: each is one of its own.
     std::vector<std::uint32_t> welded{};
     MeshFindings findings{};
+    MeshReading reading{}; ///< how complete_mesh connected it
 };
 
 /// The vertex's number in the topology: boundary faces, duplicates and setting self.
@@ -53,11 +54,13 @@ bool is_merged(const Mesh& mesh, std::uint32_t tetrahedron);
 
 /// Checks indices and coordinates (throws InputError naming `source`), then fills all other members but the
 /// name and the findings of readers. Volume signs come from det[b-a, c-a, d-a] in double. Throws InputError
-/// for duplicates that `reading` rejects.
+/// for duplicates that `reading` rejects, and for an impossible tolerance. A completed mesh can be completed
+/// again with another reading.
 void complete_mesh(Mesh& mesh, const std::string& source, const MeshReading& reading = {});
 
 /// One line about duplicates, coincident vertices and cells that were left out; empty when there are none.
-std::string findings_text(const Mesh& mesh);
+/// `weld` is how the caller's users ask for welding of equal positions.
+std::string findings_text(const Mesh& mesh, std::string_view weld = "--weld 0");
 
 /// Counts inverted and degenerate tetrahedra; indices must be in range.
 void count_flawed(Mesh& mesh);

@@ -30,4 +30,11 @@ struct MeshReading {
     bool operator==(const MeshReading&) const = default;
 };
 
+/// The value of Duplicates with this name. Throws InputError that begins with `option`.
+Duplicates duplicates_named(std::string_view name, std::string_view option = "duplicates");
+
+/// Returns a tolerance for MeshReading::weld. Throws InputError that begins with `option` when it is negative
+/// or not finite.
+double checked_weld(double tolerance, std::string_view option = "weld");
+
 } // namespace tandem

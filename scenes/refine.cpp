@@ -123,6 +123,7 @@ Mesh refined_once(const Mesh& mesh) {
     }
     refine_topology(mesh, keys, fine);
     fine.findings = mesh.findings;
+    fine.reading = mesh.reading;
     fine.findings.duplicates *= children.size();
     return fine;
 }

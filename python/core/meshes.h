@@ -5,7 +5,7 @@
 
 namespace tandem::python {
 
-/// Adds Mesh and read_mesh().
+/// Adds MeshReading, Mesh, and what makes meshes.
 void bind_meshes(nanobind::module_& module);
 
 } // namespace tandem::python

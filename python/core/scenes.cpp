@@ -74,11 +74,12 @@ void bind_scenes(nb::module_& module) {
         .def("vertices", &vertices_of, nb::arg("frame"),
              "Vertices of a frame's deformable bodies: {body: (n, 3) float64}, in world coordinates.");
     module.def(
-        "make_scene", [](const std::string& specification) { return make_scene(specification); },
-        nb::arg("specification"), nb::call_guard<nb::gil_scoped_release>(),
-        "Makes a scene from the same text as the program: NAME, NAME:par=value,par=value, the path of a "
-        "scene "
-        "description (.json) or of a recording (.frames). Raises ValueError.");
+        "make_scene",
+        [](const std::string& specification, const MeshReading& reading) {
+            return make_scene(specification, reading);
+        },
+        nb::arg("specification"), nb::arg("reading"), nb::call_guard<nb::gil_scoped_release>(),
+        "Implementation of tandem.make_scene, which checks its input.");
 }
 
 } // namespace tandem::python

@@ -18,22 +18,22 @@ import importlib.util
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ._core import DeviceError, Mesh, OutOfMemory, Scene, algorithms, devices, make_scene
+    from ._core import DeviceError, Mesh, OutOfMemory, Scene, algorithms, devices
     from .collider import Answer, Collider, Contacts, Digest, Trial
     from .comparison import Comparison, compare
     from .lines import RecordError
     from .frames import write_frames
-    from .meshes import make_mesh, read_mesh
+    from .meshes import make_mesh, make_scene, read_mesh
     from .plots import plot_cells, plot_errors, plot_frames, plot_stages, plot_sweep
     from .records import Records, read
 
 _MODULES = {
-    "_core": ("DeviceError", "Mesh", "OutOfMemory", "Scene", "algorithms", "devices", "make_scene"),
+    "_core": ("DeviceError", "Mesh", "OutOfMemory", "Scene", "algorithms", "devices"),
     "collider": ("Answer", "Collider", "Contacts", "Digest", "Trial"),
     "comparison": ("Comparison", "compare"),
     "frames": ("write_frames",),
     "lines": ("RecordError",),
-    "meshes": ("make_mesh", "read_mesh"),
+    "meshes": ("make_mesh", "make_scene", "read_mesh"),
     "plots": ("plot_cells", "plot_errors", "plot_frames", "plot_stages", "plot_sweep"),
     "records": ("Records", "read"),
 }

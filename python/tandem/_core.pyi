@@ -24,11 +24,16 @@ def devices() -> list[dict[str, object]]:
     All devices, with the fields of `tandem devices --json`: id (the argument `device` of Collider), backend, name, driver, compiler, compute_units, memory_bytes, local_bytes, double (whether it has that type), hardware (PCI address or UUID; None if unknown). A backend without devices has no entry; a Collider on one of its devices raises an error with the reason.
     """
 
+class MeshReading:
+    """How a mesh is read and connected: the arguments of tandem.read_mesh."""
+
+    def __init__(self, duplicates: str, weld: float | None, corners: bool = False, only_tetrahedra: bool = False) -> None: ...
+
 class Mesh:
     """
     Checked vertices and tetrahedra: every index is in range, every coordinate is finite.
 
-    vertices: (n, 3) float64, in the unit of the scene. tetrahedra: (m, 4) uint32, indices of vertices; answers number tetrahedra in this order. Both are read-only views of the mesh's own memory. inverted and degenerate count tetrahedra of negative and of zero volume; the mesh keeps them. merged lists duplicates of earlier tetrahedra, which are in no answer; findings is one line about them and about coincident vertices, or empty.
+    vertices: (n, 3) float64, in the unit of the scene. tetrahedra: (m, 4) uint32, indices of vertices; answers number tetrahedra in this order. Both are read-only views of the mesh's own memory. inverted and degenerate count tetrahedra of negative and of zero volume; the mesh keeps them. duplicates and weld are those of make_mesh. merged lists duplicates of earlier tetrahedra, which are in no answer; welded has for each vertex the first of those that are one with it, or is empty; findings is one line about both and about coincident vertices, or empty.
     """
 
     @property
@@ -50,17 +55,29 @@ class Mesh:
     def merged(self) -> list[int]: ...
 
     @property
+    def welded(self) -> Annotated[NDArray[numpy.uint32], dict(shape=(None,), writable=False)]: ...
+
+    @property
+    def duplicates(self) -> str: ...
+
+    @property
+    def weld(self) -> float | None: ...
+
+    @property
     def findings(self) -> str: ...
 
-def make_mesh(vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], tetrahedra: Annotated[NDArray[numpy.uint32], dict(shape=(None, 4), order='C', device='cpu', writable=False)], name: str) -> Mesh:
+def make_mesh(vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], tetrahedra: Annotated[NDArray[numpy.uint32], dict(shape=(None, 4), order='C', device='cpu', writable=False)], name: str, reading: MeshReading) -> Mesh:
     """Implementation of tandem.make_mesh, which checks its input."""
 
-def parse_mesh(data: bytes, name: str) -> Mesh:
+def connected(mesh: Mesh, reading: MeshReading) -> Mesh:
+    """A copy of a mesh that is connected by another reading."""
+
+def parse_mesh(data: bytes, name: str, reading: MeshReading) -> Mesh:
     """
     Makes a mesh of the bytes of a file of read_mesh, except of TetGen's pairs. Raises ValueError.
     """
 
-def read_mesh(path: str) -> Mesh:
+def read_mesh(path: str, reading: MeshReading) -> Mesh:
     """
     Reads a tetrahedral mesh. Content and suffix determine the format: Gmsh .msh 2.2 and 4.1, Medit .mesh, TetGen .node/.ele, legacy .vtk and .vtu. Raises ValueError with FILE:LINE.
     """
@@ -95,10 +112,8 @@ class Scene:
         Vertices of a frame's deformable bodies: {body: (n, 3) float64}, in world coordinates.
         """
 
-def make_scene(specification: str) -> Scene:
-    """
-    Makes a scene from the same text as the program: NAME, NAME:par=value,par=value, the path of a scene description (.json) or of a recording (.frames). Raises ValueError.
-    """
+def make_scene(specification: str, reading: MeshReading) -> Scene:
+    """Implementation of tandem.make_scene, which checks its input."""
 
 class Answer:
     """Result of a run of Collider; tandem.Answer wraps it."""

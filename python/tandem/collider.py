@@ -127,6 +127,8 @@ class Collider:
     never_meet: pairs of bodies that never meet, in either order; (n, n): body n never meets itself.
     self_collision: True: also pairs of tetrahedra of one body that share no vertex; "deformable": only in deformable bodies. The same as
         setting self.
+    duplicates, weld: those of tandem.make_mesh, for all meshes. None: a tandem.Mesh keeps its own, and others have "merge" and no welding. What a
+        mesh has of duplicates and coincident vertices is told once, as a UserWarning.
     stream: a CUDA stream of the device on which the collider enqueues its commands, in order with those of the application. Either
         cupy.cuda.get_current_stream() or torch.cuda.current_stream(), which the collider keeps alive, or the address of a stream that must
         outlive the collider. None: the collider makes its own stream.
@@ -142,8 +144,9 @@ class Collider:
     def __init__(self, meshes: Sequence[Any], /, algorithm: str = "tiled", device: str = "host", *, bodies: Iterable[int] | None = None,
                  deformable: bool | Iterable[int] = False, groups: Sequence[Iterable[int]] | None = None,
                  meets: Sequence[Iterable[int] | None] | None = None, never_meet: Iterable[Sequence[int]] = (),
-                 self_collision: bool | str = False, preset: str = "", stream: Any = None, **settings: Any) -> None:
-        all_meshes = [mesh_of(mesh, f"meshes[{i}]") for i, mesh in enumerate(_list(meshes, "meshes"))]
+                 self_collision: bool | str = False, duplicates: str | None = None, weld: float | None = None, preset: str = "", stream: Any = None,
+                 **settings: Any) -> None:
+        all_meshes = [mesh_of(mesh, f"meshes[{i}]", duplicates, weld) for i, mesh in enumerate(_list(meshes, "meshes"))]
         mesh_of_body = list(range(len(all_meshes)))
         if bodies is not None:
             mesh_of_body = [_number(value, f"bodies[{i}]") for i, value in enumerate(_list(bodies, "bodies"))]
@@ -164,7 +167,7 @@ class Collider:
         options = _core.ColliderOptions(mesh_of_body, flags, algorithm, preset, device, texts, filters, apart, address)
         self._core = _core.Collider(all_meshes, options, stream)
         self._arguments = {"algorithm": algorithm, "device": device, "bodies": mesh_of_body, "deformable": self._deformable, "groups": _lists(groups),
-                           "meets": _lists(meets), "never_meet": apart, "preset": preset, **texts}
+                           "meets": _lists(meets), "never_meet": apart, "duplicates": duplicates, "weld": weld, "preset": preset, **texts}
 
     def run(self, poses: Any = None, vertices: Any = None, *, next_poses: Any = None, next_vertices: Any = None,
             body_pairs: Iterable[Sequence[int]] | None = None) -> Answer:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
+import sys
 import warnings
 from typing import Any
 
 import numpy
 
 from . import _core
-from ._core import Mesh
+from ._core import Mesh, Scene
 from .arrays import host_array
 
 # Types of cells by their name in meshio and by their number in VTK.
@@ -19,39 +20,76 @@ POINTS_LINES_FACES = ("vertex", "line", "line3", "triangle", "triangle6", "trian
 KINDS = "a tandem.Mesh, a path, (vertices, tetrahedra), or an object with points and cells_dict (meshio, PyVista)"
 
 
+def _reading(duplicates, weld, corners=False, only_tetrahedra=False):
+    if not isinstance(duplicates, str):
+        raise TypeError(f"duplicates: type {type(duplicates).__name__}; expected merge, keep or reject")
+    if weld is not None and (isinstance(weld, (bool, str)) or not hasattr(weld, "__float__")):
+        raise TypeError(f"weld: type {type(weld).__name__}; expected a tolerance of 0 or more, or None")
+    return _core.MeshReading(duplicates, None if weld is None else float(weld), bool(corners), bool(only_tetrahedra))
+
+
 def _warned(mesh):
-    """Warns of what the mesh has beside sound tetrahedra, and returns it."""
+    """Warns, at the caller's line, of what the mesh has beside sound tetrahedra, and returns it."""
     if mesh.findings:
-        warnings.warn(f"mesh {mesh.name}: {mesh.findings}", stacklevel=3)
+        frame, level = sys._getframe(1), 2
+        while frame.f_back is not None and frame.f_globals.get("__package__") == __package__:
+            frame, level = frame.f_back, level + 1
+        warnings.warn(f"mesh {mesh.name}: {mesh.findings}", stacklevel=level)
     return mesh
 
 
-def make_mesh(vertices: Any, tetrahedra: Any, name: str = "mesh") -> Mesh:
-    """Makes a Mesh of vertices, (n, 3) numbers, and tetrahedra, (m, 4) integers from 0; both are copied. Raises ValueError or TypeError, whose
-    one-line message begins with `name`."""
-    return _warned(_core.make_mesh(host_array(vertices, f"{name}: vertices", 3), host_array(tetrahedra, f"{name}: tetrahedra", 4, numpy.uint32), name))
+def make_mesh(vertices: Any, tetrahedra: Any, name: str = "mesh", *, duplicates: str = "merge", weld: float | None = None) -> Mesh:
+    """Makes a Mesh of vertices, (n, 3) numbers, and tetrahedra, (m, 4) integers from 0; both are copied.
+
+    duplicates: handling of tetrahedra with the four vertices of an earlier one: "merge" (they keep their numbers and take no part), "keep"
+        (they take part) or "reject" (ValueError).
+    weld: vertices at most this far apart, also along chains, count as one for boundary faces, duplicates and self_collision; coordinates and
+        numbers stay. None: no welding. 0: equal positions.
+
+    A UserWarning tells once of duplicates and of coincident vertices. Raises ValueError or TypeError, whose one-line message begins with `name` or the argument."""
+    arrays = host_array(vertices, f"{name}: vertices", 3), host_array(tetrahedra, f"{name}: tetrahedra", 4, numpy.uint32)
+    return _warned(_core.make_mesh(*arrays, name, _reading(duplicates, weld)))
 
 
-def read_mesh(path: str | os.PathLike[str]) -> Mesh:
-    """Reads a tetrahedral mesh. Content and suffix determine the format: Gmsh .msh 2.2 and 4.1, Medit .mesh, TetGen .node/.ele, legacy .vtk
-    and .vtu. Duplicate tetrahedra take no part in answers: a UserWarning tells of them and of coincident vertices. Raises ValueError with
-    FILE:LINE."""
-    return _warned(_core.read_mesh(os.fspath(path)))
+def remade(vertices, tetrahedra, name, duplicates, weld):
+    """A mesh of its pickle, without the warning that its making gave."""
+    return _core.make_mesh(vertices, tetrahedra, name, _core.MeshReading(duplicates, weld))
 
 
-def mesh_of(mesh: Any, name: str) -> Mesh:
+def read_mesh(path: str | os.PathLike[str], *, duplicates: str = "merge", weld: float | None = None, corners: bool = False,
+              only_tetrahedra: bool = False) -> Mesh:
+    """Reads a tetrahedral mesh. Content and suffix determine the format: Gmsh .msh 1, 2.2 and 4.1, Medit .mesh, TetGen .node/.ele, Vega .veg, legacy .vtk
+    and .vtu. duplicates and weld are those of make_mesh. corners: reads tetrahedra of higher order by their corners. only_tetrahedra: leaves
+    out other volume cells. Raises ValueError with FILE:LINE."""
+    return _warned(_core.read_mesh(os.fspath(path), _reading(duplicates, weld, corners, only_tetrahedra)))
+
+
+def make_scene(specification: str, *, duplicates: str = "merge", weld: float | None = None, corners: bool = False, only_tetrahedra: bool = False) -> Scene:
+    """Makes a scene from the same text as the program: NAME, NAME:par=value,par=value, the path of a scene description (.json) or of a recording
+    (.frames). The keyword arguments are those of read_mesh, for all its meshes. Raises ValueError."""
+    scene = _core.make_scene(specification, _reading(duplicates, weld, corners, only_tetrahedra))
+    for mesh in scene.meshes:
+        _warned(mesh)
+    return scene
+
+
+def mesh_of(mesh: Any, name: str, duplicates: str | None = None, weld: float | None = None) -> Mesh:
     """A Mesh of any of KINDS, or of the bytes of a mesh file, as trimesh.interfaces.gmsh.to_volume() returns them. Points, lines and faces
-    among cells are left out. Raises ValueError or TypeError, whose one-line message begins with `name` or the path."""
+    among cells are left out. duplicates and weld are those of make_mesh; a Mesh keeps its own where they are None. Raises ValueError or
+    TypeError, whose one-line message begins with `name`, the path or the argument."""
     if isinstance(mesh, Mesh):
-        return mesh
+        if duplicates is None and weld is None:
+            return mesh
+        return _warned(_core.connected(mesh, _reading(mesh.duplicates if duplicates is None else duplicates, mesh.weld if weld is None else weld)))
+    given = {"duplicates": "merge" if duplicates is None else duplicates, "weld": weld}
     if isinstance(mesh, (bytes, bytearray)):
-        return _warned(_core.parse_mesh(bytes(mesh), name))
+        return _warned(_core.parse_mesh(bytes(mesh), name, _reading(**given)))
     if isinstance(mesh, (str, os.PathLike)):
-        return read_mesh(mesh)
+        return read_mesh(mesh, **given)
     if isinstance(mesh, (tuple, list)) and len(mesh) == 2:
-        return make_mesh(*mesh, name=name)
+        return make_mesh(*mesh, name=name, **given)
     if hasattr(mesh, "points") and hasattr(mesh, "cells_dict"):
-        return make_mesh(mesh.points, _tetrahedra(mesh.cells_dict, name), name)
+        return make_mesh(mesh.points, _tetrahedra(mesh.cells_dict, name), name, **given)
     if hasattr(mesh, "faces"):
         raise TypeError(f"{name}: type {type(mesh).__name__} has faces, not tetrahedra; fill the surface with tetrahedra (docs/user/own_data.md)")
     raise TypeError(f"{name}: type {type(mesh).__name__}; expected {KINDS}")

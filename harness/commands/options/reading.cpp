@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "harness/commands/options/reading.h"
 
-#include "base/error.h"
 #include "harness/commands/options/external_options.h"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
 
 namespace tandem {
@@ -24,28 +21,18 @@ constexpr auto only_help = "leave out volume cells that are not tetrahedra (defa
 
 std::string duplicates_choices() { return fmt::format("{}", fmt::join(duplicates_names, "|")); }
 
-Duplicates duplicates_named(const std::string& name) {
-    const auto found = std::ranges::find(duplicates_names, name);
-    if (found == duplicates_names.end())
-        throw InputError(fmt::format("--duplicates {}: give merge, keep or reject", name));
-    return static_cast<Duplicates>(found - duplicates_names.begin());
-}
-
 } // namespace
 
 void add_reading_options(CLI::App& app, MeshReading& reading) {
     app.add_option_function<std::string>(
            "--duplicates",
-           [&reading](const std::string& text) { reading.duplicates = duplicates_named(text); },
+           [&reading](const std::string& text) {
+               reading.duplicates = duplicates_named(text, "--duplicates");
+           },
            duplicates_help)
         ->option_text(duplicates_choices());
     app.add_option_function<double>(
-           "--weld",
-           [&reading](double tolerance) {
-               if (!std::isfinite(tolerance) || tolerance < 0)
-                   throw InputError(fmt::format("--weld {}: give a tolerance of 0 or more", tolerance));
-               reading.weld = tolerance;
-           },
+           "--weld", [&reading](double tolerance) { reading.weld = checked_weld(tolerance, "--weld"); },
            weld_help)
         ->option_text("TOLERANCE");
     app.add_flag("--corners", reading.corners, corners_help);
