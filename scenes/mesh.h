@@ -65,9 +65,9 @@ std::string findings_text(const Mesh& mesh, std::string_view weld = "--weld 0");
 /// Counts inverted and degenerate tetrahedra; indices must be in range.
 void count_flawed(Mesh& mesh);
 
-/// Reads a tetrahedral mesh; content and suffix determine the format: Gmsh .msh 1, 2.2 and 4.1 (ASCII and
-/// binary), Medit .mesh, TetGen .node/.ele (either file names the pair), Vega .veg, legacy .vtk and .vtu, and
-/// all of them compressed by gzip. Returns a completed mesh; throws InputError with file:line.
+/// Reads a tetrahedral mesh; content and suffix determine the format: Gmsh .msh 1, 2.2, 4.0 and 4.1 (ASCII
+/// and binary), Medit .mesh, TetGen .node/.ele (either file names the pair), Vega .veg, legacy .vtk and .vtu,
+/// and all of them compressed by gzip. Returns a completed mesh; throws InputError with file:line.
 Mesh read_mesh(const std::string& path, const MeshReading& reading = {});
 
 /// Volume of the union of non-overlapping tetrahedra: the sum of |det|/6, without merged duplicates.

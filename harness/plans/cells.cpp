@@ -99,7 +99,8 @@ void check_sets(const Request& request, std::span<const Traversal* const> chosen
     const std::vector<std::string> names(known.begin(), known.end());
     for (const auto& [name, values] : request.sets)
         if (!known.contains(name)) {
-            const auto has = [&name](const Traversal& traversal) {
+            // An initialiser, because clang 14 captures no structured binding.
+            const auto has = [&name = name](const Traversal& traversal) {
                 return std::ranges::any_of(traversal.parameters(),
                                            [&](const auto* parameter) { return parameter->name == name; });
             };

@@ -135,11 +135,11 @@ void bind_meshes(nb::module_& module) {
     module.def(
         "parse_mesh", &parsed, nb::arg("data"), nb::arg("name"), nb::arg("reading"),
         "Makes a mesh of the bytes of a file of read_mesh, except of TetGen's pairs. Raises ValueError.");
-    module.def(
-        "read_mesh", &read_mesh, nb::arg("path"), nb::arg("reading"),
-        nb::call_guard<nb::gil_scoped_release>(),
-        "Reads a tetrahedral mesh. Content and suffix determine the format: Gmsh .msh 2.2 and 4.1, Medit "
-        ".mesh, TetGen .node/.ele, legacy .vtk and .vtu. Raises ValueError with FILE:LINE.");
+    module.def("read_mesh", &read_mesh, nb::arg("path"), nb::arg("reading"),
+               nb::call_guard<nb::gil_scoped_release>(),
+               "Reads a tetrahedral mesh. Content and suffix determine the format: Gmsh .msh 1, 2.2, 4.0 and "
+               "4.1, Medit "
+               ".mesh, TetGen .node/.ele, legacy .vtk and .vtu. Raises ValueError with FILE:LINE.");
 }
 
 } // namespace tandem::python

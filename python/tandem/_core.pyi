@@ -79,7 +79,7 @@ def parse_mesh(data: bytes, name: str, reading: MeshReading) -> Mesh:
 
 def read_mesh(path: str, reading: MeshReading) -> Mesh:
     """
-    Reads a tetrahedral mesh. Content and suffix determine the format: Gmsh .msh 2.2 and 4.1, Medit .mesh, TetGen .node/.ele, legacy .vtk and .vtu. Raises ValueError with FILE:LINE.
+    Reads a tetrahedral mesh. Content and suffix determine the format: Gmsh .msh 1, 2.2, 4.0 and 4.1, Medit .mesh, TetGen .node/.ele, legacy .vtk and .vtu. Raises ValueError with FILE:LINE.
     """
 
 class Scene:

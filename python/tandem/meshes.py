@@ -58,7 +58,7 @@ def remade(vertices, tetrahedra, name, duplicates, weld):
 
 def read_mesh(path: str | os.PathLike[str], *, duplicates: str = "merge", weld: float | None = None, corners: bool = False,
               only_tetrahedra: bool = False) -> Mesh:
-    """Reads a tetrahedral mesh. Content and suffix determine the format: Gmsh .msh 1, 2.2 and 4.1, Medit .mesh, TetGen .node/.ele, Vega .veg, legacy .vtk
+    """Reads a tetrahedral mesh. Content and suffix determine the format: Gmsh .msh 1, 2.2, 4.0 and 4.1, Medit .mesh, TetGen .node/.ele, Vega .veg, legacy .vtk
     and .vtu. duplicates and weld are those of make_mesh. corners: reads tetrahedra of higher order by their corners. only_tetrahedra: leaves
     out other volume cells. Raises ValueError with FILE:LINE."""
     return _warned(_core.read_mesh(os.fspath(path), _reading(duplicates, weld, corners, only_tetrahedra)))

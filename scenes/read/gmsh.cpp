@@ -10,19 +10,36 @@ namespace tandem::read {
 
 namespace {
 
-/// Reads $MeshFormat up to its end; true for version 4.1, false for 2.x.
-bool read_version(GmshFile& file) {
-    auto& in = file.in;
-    const auto version = in.token("the MSH version");
-    const bool is_version_2 = version == "2.2" || version == "2.1" || version == "2" || version == "2.0";
-    if (!is_version_2 && version != "4.1")
-        in.fail(fmt::format("MSH version {} is not supported", in_quotes(version)),
+/// What reads the contents of sections of a version, without name and end.
+struct Version {
+    void (*read_nodes)(GmshFile&);
+    void (*read_elements)(GmshFile&);
+};
+constexpr Version version_1{read_nodes_1, read_elements_1};
+constexpr Version version_2{read_nodes_2, read_elements_2};
+constexpr Version version_40{read_nodes_40, read_elements_40};
+constexpr Version version_41{read_nodes_41, read_elements_41};
+
+/// The version by its number in $MeshFormat. Gmsh writes version 4.0 as 4.
+const Version& version_named(Scanner& in) {
+    const auto number = in.token("the MSH version");
+    if (number == "2.2" || number == "2.1" || number == "2" || number == "2.0") return version_2;
+    if (number == "4" || number == "4.0") return version_40;
+    if (number != "4.1")
+        in.fail(fmt::format("MSH version {} is not supported", in_quotes(number)),
                 "bring it to .vtu with 'tandem convert', or save as MSH 2.2 or 4.1");
+    return version_41;
+}
+
+/// Reads $MeshFormat up to its end.
+const Version& read_version(GmshFile& file) {
+    auto& in = file.in;
+    const auto& version = version_named(in);
     const int encoding = in.get<int>("the file type");
     if (encoding != 0 && encoding != 1)
         in.fail("the file type is neither 0 (ASCII) nor 1 (binary)", "export the file again");
     if (in.get<int>("the data size") != 8) in.fail("the data size is not 8", "save with doubles");
-    if (encoding == 0) return !is_version_2;
+    if (encoding == 0) return version;
     file.binary = true;
     in.count_bytes();
     in.line();
@@ -31,7 +48,7 @@ bool read_version(GmshFile& file) {
         cursor.fail("the byte-order mark is not 1: the file is big endian",
                     "save on a little-endian machine");
     in.seek(cursor.at());
-    return !is_version_2;
+    return version;
 }
 
 /// Searches for the section's end, since its content can be binary.
@@ -75,13 +92,9 @@ std::string_view section_name(Scanner& in) {
     return name;
 }
 
-enum class Version { none, one, two, four };
-
-void read_nodes(GmshFile& file, Version version) {
+void read_nodes(GmshFile& file, const Version& version) {
     if (file.tags.size() > 0) file.in.fail("a second section $Nodes", "merge the two");
-    version == Version::four  ? read_nodes_4(file)
-    : version == Version::two ? read_nodes_2(file)
-                              : read_nodes_1(file);
+    version.read_nodes(file);
     if (const auto duplicate = file.tags.index())
         file.in.fail(fmt::format("node {} occurs twice", *duplicate), "repair the mesh");
 }
@@ -90,23 +103,21 @@ void read_nodes(GmshFile& file, Version version) {
 
 Mesh parse_gmsh(std::string_view bytes, const std::string& source, const MeshReading& reading) {
     GmshFile file{.in = Scanner(bytes, source), .reading = reading};
-    auto version = Version::none;
+    const Version* version = nullptr;
     while (!file.in.done()) {
         const auto name = section_name(file.in);
         const bool is_1 = name == "$NOD" || name == "$ELM";
         const bool nodes = name == "$Nodes" || name == "$NOD",
                    elements = name == "$Elements" || name == "$ELM";
-        if (is_1 && version == Version::none) version = Version::one;
-        if ((nodes || elements) && (version == Version::none || is_1 != (version == Version::one)))
+        if (is_1 && version == nullptr) version = &version_1;
+        if ((nodes || elements) && (version == nullptr || is_1 != (version == &version_1)))
             file.in.fail(fmt::format("{} comes before $MeshFormat", name), "export the file again");
         if (name == "$MeshFormat")
-            version = read_version(file) ? Version::four : Version::two;
+            version = &read_version(file);
         else if (nodes)
-            read_nodes(file, version);
+            read_nodes(file, *version);
         else if (elements)
-            version == Version::four  ? read_elements_4(file)
-            : version == Version::two ? read_elements_2(file)
-                                      : read_elements_1(file);
+            version->read_elements(file);
         else
             skip_section(file.in, name);
         end_section(file.in, name);

@@ -56,8 +56,10 @@ void read_nodes_1(GmshFile& file);
 void read_elements_1(GmshFile& file);
 void read_nodes_2(GmshFile& file);
 void read_elements_2(GmshFile& file);
-void read_nodes_4(GmshFile& file);
-void read_elements_4(GmshFile& file);
+void read_nodes_40(GmshFile& file);
+void read_elements_40(GmshFile& file);
+void read_nodes_41(GmshFile& file);
+void read_elements_41(GmshFile& file);
 
 /// Whether elements of this type are tetrahedra of any order. Their first four nodes are the corners.
 inline bool is_tetrahedron(const ElementType& type) { return type.name.ends_with("tetrahedron"); }

@@ -77,11 +77,11 @@ void read_elements(In& in, GmshFile& file) {
 
 } // namespace
 
-void read_nodes_4(GmshFile& file) {
+void read_nodes_41(GmshFile& file) {
     in_encoding(file, [&](auto& in) { read_nodes(in, file); });
 }
 
-void read_elements_4(GmshFile& file) {
+void read_elements_41(GmshFile& file) {
     in_encoding(file, [&](auto& in) { read_elements(in, file); });
 }
 
