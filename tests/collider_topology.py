@@ -36,7 +36,7 @@ class Topology(ColliderCase):
         answer = collider.run(POSES)
         return answer.digest(), answer.contact_digest()
 
-    def told(self, function, *arguments, **named):
+    def with_warnings(self, function, *arguments, **named):
         """Result and the texts of warnings, each at a line of this file."""
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
@@ -62,7 +62,7 @@ class Topology(ColliderCase):
             _, errors, count = self.program(name, *words)
             for device in DEVICES:
                 with self.subTest(name, device=device, **options):
-                    mesh, texts = self.told(tandem.read_mesh, self.paths[name], **options)
+                    mesh, texts = self.with_warnings(tandem.read_mesh, self.paths[name], **options)
                     self.assertEqual(texts, [text.replace("--weld 0", "weld=0") for text in errors])
                     self.assertEqual(self.answer(mesh, device)[0].count, count)
 
@@ -73,28 +73,28 @@ class Topology(ColliderCase):
         arrays = lambda name: (numpy.array(getattr(self, name)[0]), numpy.array(getattr(self, name)[1]))
         for name, option, expected in (("torn", {"weld": 0}, right), ("twice", {"duplicates": "keep"}, kept), ("twice", {}, right)):
             forms = {"arrays": arrays(name), "path": self.paths[name], "bytes": self.paths[name].read_bytes(),
-                     "meshio": meshio.Mesh(arrays(name)[0], [("tetra", arrays(name)[1])]), "Mesh": self.told(tandem.make_mesh, *arrays(name), "a")[0]}
+                     "meshio": meshio.Mesh(arrays(name)[0], [("tetra", arrays(name)[1])]), "Mesh": self.with_warnings(tandem.make_mesh, *arrays(name), "a")[0]}
             for form, mesh in forms.items():
                 with self.subTest(form, name=name, **option):
                     self.assertEqual(self.answer(mesh, **option), expected)
 
     def test_meshes_tell_what_they_are_and_keep_it(self):
         count = len(self.whole[1])
-        twice, texts = self.told(tandem.make_mesh, *self.twice, "twice")
+        twice, texts = self.with_warnings(tandem.make_mesh, *self.twice, "twice")
         self.assertEqual(texts, [f"mesh twice: {count} tetrahedra have the vertices of an earlier one and take no part"])
         self.assertEqual((twice.duplicates, twice.weld, twice.merged), ("merge", None, list(range(count, 2 * count))))
-        torn, texts = self.told(tandem.make_mesh, *self.torn, "torn", weld=0)
+        torn, texts = self.with_warnings(tandem.make_mesh, *self.torn, "torn", weld=0)
         self.assertEqual(texts, [f"mesh torn: {self.more} vertices are welded to an earlier one"])
         self.assertEqual((torn.weld, len(torn.welded), int((torn.welded != numpy.arange(4 * count)).sum())), (0, 4 * count, self.more))
         numpy.testing.assert_array_equal(torn.vertices, self.torn[0])
-        collider, texts = self.told(tandem.Collider, [torn, twice], self_collision=True)
+        collider, texts = self.with_warnings(tandem.Collider, [torn, twice], self_collision=True)
         self.assertEqual(texts, [], "what was told once")
         self.assertEqual((collider.arguments["duplicates"], collider.arguments["weld"]), (None, None))
-        again, texts = self.told(pickle.loads, pickle.dumps([torn, twice]))
+        again, texts = self.with_warnings(pickle.loads, pickle.dumps([torn, twice]))
         self.assertEqual(texts, [])
         self.assertEqual([(mesh.duplicates, mesh.weld, mesh.merged, mesh.welded.tolist()) for mesh in again],
                          [(mesh.duplicates, mesh.weld, mesh.merged, mesh.welded.tolist()) for mesh in (torn, twice)])
-        collider, texts = self.told(tandem.Collider, [twice, self.paths["twice"]], duplicates="keep")
+        collider, texts = self.with_warnings(tandem.Collider, [twice, self.paths["twice"]], duplicates="keep")
         self.assertEqual([text.partition(": ")[2] for text in texts], [f"{count} tetrahedra have the vertices of an earlier one and are kept"] * 2)
         self.assertEqual(collider.arguments["duplicates"], "keep")
         self.assertEqual(self.answer(torn), self.answer(self.whole), "the collider keeps what the mesh has")
@@ -103,9 +103,9 @@ class Topology(ColliderCase):
     def test_scenes_take_them(self):
         scene = self.work / "scene.json"
         scene.write_text('{"meshes": {"m": {"file": "torn.msh"}}, "bodies": [{"mesh": "m"}], "frames": 1}')
-        made, texts = self.told(tandem.make_scene, str(scene), weld=0)
+        made, texts = self.with_warnings(tandem.make_scene, str(scene), weld=0)
         self.assertEqual((texts, made.meshes[0].weld), ([f"mesh torn: {self.more} vertices are welded to an earlier one"], 0))
-        self.assertEqual(len(self.told(tandem.make_scene, str(scene))[1]), 1)
+        self.assertEqual(len(self.with_warnings(tandem.make_scene, str(scene))[1]), 1)
 
     def test_bad_arguments(self):
         text = f"{len(self.whole[1])} of {len(self.twice[1])} tetrahedra have the vertices of an earlier one, such as 24 those of 0"

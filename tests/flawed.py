@@ -95,6 +95,34 @@ class Flawed(Case):
         for tolerance in ("-1", "nan", "inf"):
             self.bad(f"--weld {tolerance}: give a tolerance of 0 or more", "run", "plates", f"--weld={tolerance}")
 
+    def test_welded_halves_on_every_device(self):
+        """A folded bar of two halves that have vertices of their own where they meet: welded, every algorithm on host and OpenCL leaves out pairs
+        of a common welded vertex, and answers as for the bar in one piece."""
+        points, tets = bar(4, (0, 0, 0))
+        points = [(abs(x - 1.5), y + x / 16, z) for x, y, z in points]
+        half = tets[len(tets) // 2:]
+        cut = sorted({v for tet in half for v in tet} & {v for tet in tets[:len(tets) // 2] for v in tet})
+        own = {v: len(points) + i for i, v in enumerate(cut)}
+        self.assertEqual(len(cut), 4)
+        whole = gmsh(self.work / "joined.msh", points, tets)
+        halves = gmsh(self.work / "halves.msh", points + [points[v] for v in cut], [*tets[:len(tets) // 2], *([own.get(v, v) for v in tet] for tet in half)])
+
+        def answers(mesh, *more):
+            out = self.work / "halves.jsonl"
+            out.unlink(missing_ok=True)
+            status, text, _ = tandem("check", "--mesh", mesh, "--mesh", mesh, "--pose", "0 0 0 1 0 0 0", "--pose", "0.3 0.2 0.1 1 0 0 0", "--set", "self=on",
+                                     "--device", "host,opencl:0", *(() if LONG else ("--preset", "grouped,resident,fair")), "--out", out, *more)
+            self.assertEqual(status, 0, text)
+            return {(record["algorithm"], *(device["id"] for device in record["devices"]), record["preset"]):
+                    (record["agreement"]["digest"], record["agreement"]["contact_digest"]) for record in self.records(out)}
+
+        right, welded, apart = answers(whole), answers(halves, "--weld", 0), answers(halves)
+        self.assertEqual({key[1] for key in right}, {"host", "opencl:0"})
+        self.assertLessEqual({one["name"] for one in json.loads(tandem("algorithms", "--json")[1]) if not one["baseline"]}, {key[0] for key in right})
+        self.assertEqual(welded, right)
+        for key, answer in apart.items():
+            self.assertNotEqual(answer, right[key], key)
+
     def test_many_flawed_bodies_are_counted_and_the_first_named(self):
         flat, _ = self.flawed("many.msh")
         out = self.work / "many.jsonl"
