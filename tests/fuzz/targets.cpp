@@ -56,19 +56,24 @@ std::string file_of(const char* name, std::string_view bytes) {
     return folder.file(name, bytes);
 }
 
-/// The first byte selects the file suffix; a line "---" separates TetGen's two files.
+/// The first byte selects the file suffix and how the mesh is read; a line "---" separates TetGen's two
+/// files.
 void read_any_mesh(std::string_view bytes) {
     constexpr std::array suffixes{".msh", ".mesh", ".vtk", ".vtu", ".veg", ".node"};
     if (bytes.empty()) return;
-    const std::string suffix = suffixes[static_cast<unsigned char>(bytes.front()) % suffixes.size()];
+    const auto choice = static_cast<unsigned char>(bytes.front());
+    const std::string suffix = suffixes[choice % suffixes.size()];
+    const auto flags = choice / suffixes.size();
+    MeshReading reading{.corners = (flags & 1) != 0, .only_tetrahedra = (flags & 2) != 0};
+    if ((flags & 4) != 0) reading.weld = 0.5;
     bytes.remove_prefix(1);
     auto mesh = [&] {
-        if (suffix != ".node") return parse_mesh(bytes, "fuzz" + suffix);
+        if (suffix != ".node") return parse_mesh(bytes, "fuzz" + suffix, reading);
         const auto at = std::min(bytes.find("---\n"), bytes.size());
         return parse_tetgen(bytes.substr(0, at), "fuzz.node", bytes.substr(std::min(at + 4, bytes.size())),
-                            "fuzz.ele");
+                            "fuzz.ele", reading);
     }();
-    complete_mesh(mesh, "fuzz" + suffix);
+    complete_mesh(mesh, "fuzz" + suffix, reading);
 }
 
 /// Reads the first and the last frame.
