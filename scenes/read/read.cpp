@@ -69,6 +69,12 @@ const Format* by_suffix(const std::string& suffix) {
     return found == formats.end() ? nullptr : &*found;
 }
 
+/// Whether a file begins as those of Gmsh do, whose suffix Ansys Fluent has, too.
+bool has_sections(std::string_view bytes) {
+    read::Scanner in(bytes, "");
+    return !in.done() && bytes[in.at()] == '$';
+}
+
 /// Formats without a reader, by their first characters, which have a name in refusals.
 struct Foreign {
     std::string_view opening, name;
@@ -147,7 +153,7 @@ Mesh parse_mesh(std::string_view bytes, const std::string& source, const MeshRea
     if (const auto name = foreign_name(bytes); !name.empty()) refuse_format(name, source);
     const Format* format = by_content(bytes);
     if (format == nullptr) format = by_suffix(suffix);
-    if (format == nullptr) refuse_format({}, source);
+    if (format == nullptr || (format == &formats[0] && !has_sections(bytes))) refuse_format({}, source);
     Mesh mesh = format->parse(bytes, source, reading);
     read::require_tetrahedra(mesh, source);
     return mesh;

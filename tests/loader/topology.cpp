@@ -195,6 +195,7 @@ TEST(Topology, DescriptionsWeldAfterTheirScale) {
 }
 
 TEST(Topology, FormatsWithoutAReaderAreNamed) {
+    expect_failure("fluent.msh", "(0 \"Ansys Fluent\")\n(2 3)\n", ": ", "tandem convert");
     expect_failure("a.bdf", "$ Nastran\nBEGIN BULK\n", ": ", "tandem convert");
     expect_failure("a.unv", "    -1\n  2411\n", ": ", "I-deas UNV");
     expect_failure("a.feb", "<?xml version=\"1.0\"?>\n<febio_spec version=\"4.0\">\n", ": ", "FEBio");
