@@ -121,7 +121,9 @@ def drawn(count):
     meshes = [*own_meshes(), *real_meshes()]
     small = [mesh for mesh in meshes if len(mesh[2]) <= 3000]
     every = [(form, content) for content in CONTENTS for form in FORMATS if content is not with_ghosts or form[0] == ".vtu"]
-    every += 2 * [(form, plain) for form in FORMATS if form[1] is HERE]
+    # meshio writes no elements of second order to TetGen's files, and reads such a file without an end.
+    every = [(form, content) for form, content in every if content is not second_order or form[0] not in (".node", ".ele")]
+    every += 3 * [(form, plain) for form in FORMATS if form[1] is HERE]
     made = [(*one, (meshes if one[1] is plain and one[0][1] is HERE else small)) for one in every]
     made = [(form, content, pool[i * 5 % len(pool)]) for i, (form, content, pool) in enumerate(made)]
     return made if count is None else [made[i * len(made) // count] for i in range(count)]
@@ -193,8 +195,8 @@ class MadeMeshes(Case):
                     self.expect_read(output, content, counts)
                     converted += 1
         print(f"{read} meshes read, {converted} refused and converted, {left} that meshio cannot write or read")
-        self.assertGreater(read, 200 if LONG else 8)
-        self.assertGreater(converted, 80 if LONG else 4)
+        self.assertGreater(read, 150 if LONG else 8)
+        self.assertGreater(converted, 100 if LONG else 4)
 
 
 if __name__ == "__main__":
