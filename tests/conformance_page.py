@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """conformance_page.py PROGRAM SOURCE: scripts/conformance on device host, with this program, with one whose answers are
-wrong, and with one that fails."""
+wrong, one that finds no pairs, and one that fails."""
+import json
 import subprocess
 import sys
 import unittest
@@ -10,13 +11,17 @@ from program import PROGRAM, SOURCE, Case
 
 # Runs the program, then edits the file of records.
 WRAPPER = """#!/usr/bin/python3
-import pathlib, subprocess, sys
+import pathlib, re, subprocess, sys
 done = subprocess.run([{program!r}, *sys.argv[1:]])
 if sys.argv[1] == "check":
     if {end}:
         sys.exit("tandem: no memory")
     out = pathlib.Path(sys.argv[sys.argv.index("--out") + 1])
-    out.write_text(out.read_text().replace('"missing":0', '"missing":7').replace('"status":"ok"', '"status":"wrong"'))
+    text = out.read_text()
+    if {empty}:
+        out.write_text(re.sub('"count":[0-9]+', '"count":0', text))
+        sys.exit(0)
+    out.write_text(text.replace('"missing":0', '"missing":7').replace('"status":"ok"', '"status":"wrong"'))
     sys.exit(1)
 sys.exit(done.returncode)
 """
@@ -29,9 +34,9 @@ class ConformancePage(Case):
                                "-o", page, *more], capture_output=True, text=True, check=False)
         return done.returncode, done.stdout, done.stderr, page.read_text() if page.exists() else ""
 
-    def other(self, end):
-        path = self.work / f"other{end}"
-        path.write_text(WRAPPER.format(program=str(PROGRAM), end=end))
+    def other(self, end=False, empty=False):
+        path = self.work / f"other{end}{empty}"
+        path.write_text(WRAPPER.format(program=str(PROGRAM), end=end, empty=empty))
         path.chmod(0o755)
         return path
 
@@ -42,15 +47,44 @@ class ConformancePage(Case):
         self.assertIn("2 of 2 cells are right.", page)
 
     def test_wrong(self):
-        code, text, errors, page = self.conformance(self.other(False))
+        code, text, errors, page = self.conformance(self.other())
         self.assertEqual((code, errors), (1, ""), text)
         self.assertIn("| tiled | resident | 7 missing | 7 missing |", page)
         self.assertIn("0 of 2 cells are right.", page)
 
     def test_failing(self):
-        code, text, _, page = self.conformance(self.other(True))
+        code, text, _, page = self.conformance(self.other(end=True))
         self.assertEqual(code, 1, text)
         self.assertIn("- k = 8, float: tandem: no memory", page)
+
+    def test_an_empty_answer_shows_nothing(self):
+        code, text, errors, page = self.conformance(self.other(empty=True))
+        self.assertEqual((code, errors), (1, ""), text)
+        self.assertIn("| tiled | resident | no pairs | no pairs |", page)
+
+    def test_columns_are_kept_and_digests_compared(self):
+        """A second call finds its columns; those of another device join the page, and a different digest is an error."""
+        kept = self.work / "kept.json"
+        self.assertEqual(self.conformance(PROGRAM, "--keep", kept)[0], 0)
+        columns = kept.read_text()
+        code, text, _, page = self.conformance(self.other(end=True), "--keep", kept)
+        self.assertEqual((code, kept.read_text()), (0, columns), text)
+        both = json.loads(columns)
+        (name, first), = both["results"].items()
+        both["results"]["other device"] = first
+        kept.write_text(json.dumps(both))
+        code, _, _, page = self.conformance(PROGRAM, "--keep", kept)
+        self.assertEqual(code, 0)
+        self.assertIn("2 cells were right on two devices or more; their digests are equal in 2.", page)
+        self.assertIn("## other device", page)
+        both["results"]["other device"] = {title: {**column, "digests": {"tiled resident": "{}"}} for title, column in first.items()}
+        kept.write_text(json.dumps(both))
+        code, text, _, page = self.conformance(PROGRAM, "--keep", kept)
+        self.assertEqual(code, 1)
+        self.assertIn("tiled resident, k = 8, float: 2 different digests", text)
+        self.assertIn("- tiled resident, k = 8, float: 2 different digests", page)
+        kept.write_text(json.dumps({**both, "version": "another"}))
+        self.assertIn("is of another program (another)", self.conformance(PROGRAM, "--keep", kept)[2])
 
     def test_no_such_device(self):
         code, _, errors, _ = self.conformance(PROGRAM, "--device", "cuda:99")
