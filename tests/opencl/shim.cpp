@@ -3,6 +3,7 @@
 // until the host waits, as a slow device would. The source of a write in flight must not change: the shim
 // compares it when the host waits and when the process ends, and aborts on a difference. SHIM_CALL,
 // SHIM_CODE: as in opencl_shim_fail(); SHIM_COUNT: a file for the number of calls.
+// SHIM_BUILDS: the first builds fail.
 #define CL_TARGET_OPENCL_VERSION 120
 #include "tests/opencl/shim.h"
 
@@ -39,7 +40,7 @@ struct State {
         std::getenv("SHIM_CODE") != nullptr ? std::atoi(std::getenv("SHIM_CODE")) : CL_OUT_OF_RESOURCES;
     unsigned long calls = 0;
     std::size_t reported_group_size = 0; ///< reported maximum work-group size of every kernel, if not 0
-    unsigned long failing_builds = 0;    ///< number of builds that still fail
+    unsigned long failing_builds = number("SHIM_BUILDS"); ///< number of builds that still fail
     bool has_started = false;            ///< a command has been enqueued
     std::map<cl_command_queue, Queue> queues;
     Queue released; ///< in flight on released queues
