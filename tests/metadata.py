@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """metadata.py PROGRAM SOURCE: what archives and search engines read: .zenodo.json and codemeta.json agree with CITATION.cff (command_line.py compares it
-with CITATION.bib), and results/croissant.json is as scripts/croissant makes it. Lists of packages name the same libraries."""
+with CITATION.bib), results/croissant.json is as scripts/croissant makes it, and lists of packages and the recipe of Spack name CMake's libraries."""
+import ast
 import json
 import re
 import unittest
@@ -55,6 +56,25 @@ class Metadata(unittest.TestCase):
         self.assertGreater(len(needed), 9)
         fetched = set(re.findall(r"[a-z0-9.-]+", fetch.partition("packages=(")[2].partition(")")[0]))
         self.assertEqual(needed - fetched, set())
+
+    def test_the_recipe_of_spack_agrees_with_cmake(self):
+        recipe = (SOURCE / "scripts/spack/package.py").read_text()
+        (tandem,) = [node for node in ast.parse(recipe).body if isinstance(node, ast.ClassDef)]
+        self.assertEqual((tandem.name, [base.id for base in tandem.bases]), ("Tandem", ["CMakePackage"]))
+        cmake = "".join((SOURCE / name).read_text() for name in ("CMakeLists.txt", "cmake/python.cmake"))
+        options = re.findall(r'self\.define\w*\("(\w+)"', recipe)
+        self.assertEqual(len(options), 3)
+        for option in options:
+            self.assertRegex(cmake, rf"(option\(|set\(){option} ")
+        self.assertIn(f'cmake@{re.search(r"cmake_minimum_required.VERSION ([0-9.]+)", cmake)[1]}:', recipe)
+        # What Spack calls the packages of CMake; compilers and threads come with the machine.
+        names = {"Boost": "boost", "Eigen3": "eigen", "fmt": "fmt", "nlohmann_json": "nlohmann-json", "CLI11": "cli11", "OpenCL": "ocl-icd", "ZLIB": "zlib-api",
+                 "LibLZMA": "xz", "TBB": "intel-tbb", "GMP": "gmp+cxx", "LZ4": "lz4", "Python3": "python@3.11:", "Threads": None}
+        required = re.findall(r"^find_package\((\w+).*REQUIRED", (SOURCE / "CMakeLists.txt").read_text(), re.M)
+        self.assertLessEqual(set(required), set(names))
+        for name in required:
+            if names[name]:
+                self.assertIn(f'"{names[name]}"', recipe, name)
 
 
 if __name__ == "__main__":

@@ -18,7 +18,7 @@ class Tandem(CMakePackage):
     depends_on("python@3.11:", type=("build", "run"))
     depends_on("py-pandas", type="run")
     depends_on("py-scipy", type="run")
-    for library in ("boost", "cli11", "eigen", "fmt", "gmp+cxx", "intel-tbb", "nlohmann-json", "opencl-headers", "ocl-icd", "zlib-api"):
+    for library in ("boost", "cli11", "eigen", "fmt", "gmp+cxx", "intel-tbb", "lz4", "nlohmann-json", "opencl-headers", "ocl-icd", "xz", "zlib-api"):
         depends_on(library)
     depends_on("mpi", when="+mpi")
 
