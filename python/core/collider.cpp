@@ -224,16 +224,33 @@ void Collider::check(const Input& input) const {
         throw InputError("next_poses and next_vertices are for setting motion=linear; make the collider with "
                          "motion=linear, or leave them out");
     check_rows(scene_, input);
+    if (input.updates) check_update(input);
+}
+
+void Collider::check_update(const Input& input) const {
+    if (input.on_device)
+        throw InputError("update() takes arrays in host memory; write the changes into the arrays on the "
+                         "device, and give those to run()");
+    if (is_last_on_device_)
+        throw InputError("update() changes frames in host memory, and arrays of the last run were on the "
+                         "device; write the changes there, and give the arrays to run()");
+    if (!host_input_->last())
+        throw InputError("update() has no frame to change; give run() the first frame, of all bodies");
 }
 
 FrameInput Collider::host_frames(const Input& input) {
-    const auto& frame = host_input_->frame(input.frame);
+    const auto last = host_input_->last();
+    const auto& frame = host_input_->frame(input.frame, input.updates ? last.get() : nullptr);
+    is_last_on_device_ = false;
     if (!input.next) return frame;
     if (!next_host_input_) next_host_input_.emplace(scene_, precision_);
-    return {frame, of_successor([&] { return &next_host_input_->frame(*input.next); })};
+    return {frame, of_successor([&] {
+                return &next_host_input_->frame(*input.next, input.updates ? &frame : nullptr);
+            })};
 }
 
 DeviceFrameInput Collider::device_frames(const Input& input) {
+    is_last_on_device_ = true;
     if (!device_input_) device_input_.emplace(*devices_.front(), scene_);
     return device_input_->frames(input);
 }

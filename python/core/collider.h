@@ -77,9 +77,10 @@ public:
 private:
     void open_devices(const ColliderOptions& options);
     void prepare(const ColliderOptions& options);
-    /// Throws InputError for a wrong number of rows, and unless there is a successor exactly with
-    /// motion=linear.
+    /// Throws InputError for a wrong number of rows, unless there is a successor exactly with
+    /// motion=linear, and for an update without a frame in host memory.
     void check(const Input& input) const;
+    void check_update(const Input& input) const;
     /// Setting origin=auto: takes the origin of this frame, the first, and prepares the session again if it
     /// differs.
     void begin_at(const Input& input);
@@ -102,6 +103,7 @@ private:
     Origin origin_ = Origin::world;
     std::optional<HostInput> host_input_, next_host_input_; ///< of frames, and of their successors
     std::optional<DeviceInput> device_input_;
+    bool is_last_on_device_ = false;   ///< whether the last frame was in memory of the device
     std::unique_ptr<Session> session_; ///< null until an algorithm is chosen
     std::optional<Settings> prepared_; ///< of the session; none of a chosen one
     std::optional<Frame> first_;       ///< the first frame, if it determines the origin

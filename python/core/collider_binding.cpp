@@ -10,6 +10,7 @@
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
 
@@ -70,6 +71,32 @@ std::vector<BodyPair> body_pairs_of(const BodyPairNumbers& numbers) {
     return pairs;
 }
 
+std::unique_ptr<Answer> run_arrays(const std::shared_ptr<Collider>& collider, nb::handle poses,
+                                   nb::handle vertices, nb::handle next_poses, nb::handle next_vertices,
+                                   const std::optional<BodyPairNumbers>& body_pairs) {
+    auto input = input_of(*collider, {poses, vertices}, {next_poses, next_vertices});
+    if (!input) return nullptr;
+    if (body_pairs) input->body_pairs = body_pairs_of(*body_pairs);
+    return run(collider, *input);
+}
+
+/// (numbers of bodies, a row of their poses each or None, {body: vertices} or None).
+using ChangeTuple = std::tuple<std::vector<std::uint32_t>, nb::object, nb::object>;
+
+ChangeArguments changes_of(const ChangeTuple& changes) {
+    const auto& [posed, poses, vertices] = changes;
+    return {posed, poses, vertices};
+}
+
+std::unique_ptr<Answer> update(const std::shared_ptr<Collider>& collider, const ChangeTuple& frame,
+                               const std::optional<ChangeTuple>& next,
+                               const std::optional<BodyPairNumbers>& body_pairs) {
+    auto input =
+        update_of(*collider, changes_of(frame), next ? std::optional(changes_of(*next)) : std::nullopt);
+    if (body_pairs) input.body_pairs = body_pairs_of(*body_pairs);
+    return run(collider, input);
+}
+
 /// Address of the queue that producers of DLPack arrays get, 0 for the default stream.
 std::uintptr_t queue(const Collider& collider) {
     return reinterpret_cast<std::uintptr_t>(collider.devices().front()->queue());
@@ -93,14 +120,6 @@ void bind_collider(nb::module_& module) {
     module.def("algorithms", &algorithm_names, "Names of the algorithms that Collider accepts besides auto.");
     bind_options(module);
     const auto released = nb::call_guard<nb::gil_scoped_release>();
-    const auto run_given = [](const std::shared_ptr<Collider>& self, nb::handle poses, nb::handle vertices,
-                              nb::handle next_poses, nb::handle next_vertices,
-                              const std::optional<BodyPairNumbers>& body_pairs) -> std::unique_ptr<Answer> {
-        auto input = input_of(*self, {poses, vertices}, {next_poses, next_vertices});
-        if (!input) return nullptr;
-        if (body_pairs) input->body_pairs = body_pairs_of(*body_pairs);
-        return run(self, *input);
-    };
     const auto run_device_input = [](const std::shared_ptr<Collider>& self, nb::handle poses,
                                      const nb::list& vertices, nb::handle next_poses,
                                      const std::optional<nb::list>& next_vertices) {
@@ -109,13 +128,16 @@ void bind_collider(nb::module_& module) {
     };
     nb::class_<Collider>(module, "Collider", "Implementation of tandem.Collider, which checks its input.")
         .def(nb::new_(&make), nb::arg("meshes"), nb::arg("options"), nb::arg("owner").none())
-        .def("run", run_given, nb::arg("poses").none(), nb::arg("vertices").none(),
+        .def("run", &run_arrays, nb::arg("poses").none(), nb::arg("vertices").none(),
              nb::arg("next_poses").none(), nb::arg("next_vertices").none(), nb::arg("body_pairs").none(),
              nb::sig(
                  "def run(self, poses: object | None, vertices: object | None, next_poses: object | None, "
                  "next_vertices: object | None, body_pairs: list[tuple[int, int]] | None) -> Answer | None"),
              "Runs a frame. vertices, next_vertices: a list with one array per deformable body, or "
              "{number: array}. Returns None for any other container.")
+        .def("update", &update, nb::arg("frame"), nb::arg("next").none(), nb::arg("body_pairs").none(),
+             "Runs the last frame with changes: numbers of bodies, an array of their poses or None, and "
+             "{number: vertices} or None. next: changes from that frame to its successor.")
         .def("run_device_input", run_device_input, nb::arg("poses").none(), nb::arg("vertices"),
              nb::arg("next_poses") = nb::none(), nb::arg("next_vertices") = nb::none(),
              "Runs a frame whose arrays are all in memory of the device; for device host, in host memory. "

@@ -12,7 +12,7 @@ namespace {
 /// `prefix`: how the names of the arguments begin.
 void check_rows(const Scene& scene, const FrameArrays& arrays, std::string_view prefix) {
     const auto bodies = scene.bodies.size();
-    if (arrays.poses && arrays.poses->rows != bodies)
+    if (arrays.poses && arrays.posed.empty() && arrays.poses->rows != bodies)
         throw InputError(fmt::format("{}poses: {} rows for {} bodies; give each body its row", prefix,
                                      arrays.poses->rows, bodies));
     for (std::size_t body = 0; body < bodies; ++body) {

@@ -27,35 +27,48 @@ void HostInput::take_unused() {
 
 /// The copy counts coordinates that are out of range. Only then the library's slower check runs, which throws
 /// the error message.
-const Frame& HostInput::frame(const FrameArrays& arrays) {
+const Frame& HostInput::frame(const FrameArrays& arrays, const Frame* base) {
     out_of_range_ = 0;
     take_unused();
+    try {
+        fill(arrays, base);
+        if (out_of_range_ > 0) check_range(scene_, *frames_.front(), precision_);
+    } catch (...) {
+        std::swap(frames_[0], frames_[1]); // an update may follow, of the last frame that was usable
+        throw;
+    }
+    return *frames_.front();
+}
+
+void HostInput::fill(const FrameArrays& arrays, const Frame* base) {
     auto& frame = *frames_.front();
-    if (arrays.poses)
-        set_poses(*arrays.poses);
-    else
+    if (base != nullptr)
+        frame = *base;
+    else if (!arrays.poses)
         std::ranges::fill(frame.poses, Pose{});
+    if (arrays.poses) set_poses(arrays);
     for (std::size_t body = 0; body < scene_.bodies.size(); ++body) {
         if (!scene_.bodies[body].deformable) continue;
         if (const auto* const given = arrays.vertices_of(body))
             set_vertices(body, *given);
-        else
+        else if (base == nullptr)
             frame.deformed[body] = scene_.meshes[scene_.bodies[body].mesh].vertices;
     }
-    if (out_of_range_ > 0) check_range(scene_, frame, precision_);
-    return frame;
 }
 
-void HostInput::set_poses(const GivenRows& poses) {
-    auto& frame = *frames_.front();
-    for (std::size_t body = 0; body < scene_.bodies.size(); ++body) {
-        if (scene_.bodies[body].deformable) {
-            frame.poses[body] = {};
-            continue;
-        }
-        frame.poses[body] = pose_of_row(static_cast<const double*>(poses.data) + 7 * body, body);
-        for (const double x : frame.poses[body].translation) out_of_range_ += !(std::abs(x) <= limit_);
-    }
+void HostInput::set_poses(const FrameArrays& arrays) {
+    const auto* const rows = static_cast<const double*>(arrays.poses->data);
+    for (std::size_t i = 0; i < arrays.posed.size(); ++i) set_pose(arrays.posed[i], rows + 7 * i);
+    if (!arrays.posed.empty()) return;
+    for (std::size_t body = 0; body < scene_.bodies.size(); ++body) set_pose(body, rows + 7 * body);
+}
+
+void HostInput::set_pose(std::size_t body, const double* row) {
+    auto& pose = frames_.front()->poses[body];
+    pose = {};
+    if (scene_.bodies[body].deformable) return;
+    pose = pose_of_row(row, body);
+    for (const double x : pose.translation) out_of_range_ += !(std::abs(x) <= limit_);
 }
 
 void HostInput::set_vertices(std::size_t body, const GivenRows& vertices) {

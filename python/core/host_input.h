@@ -17,16 +17,20 @@ public:
     /// `scene` must outlive it.
     HostInput(const Scene& scene, Precision precision);
 
-    /// A frame of arrays that pass check_rows. The next call but one overwrites it. Throws InputError for
-    /// coordinates that do not pass check_range, and for rows without a rotation.
-    const Frame& frame(const FrameArrays& arrays);
-    /// The last frame, which later calls do not overwrite as long as somebody holds it.
+    /// A frame of arrays that pass check_rows. What they leave out is that of `base`, or of rest_frame() if
+    /// it is null. The next call but one overwrites the frame. Throws InputError for coordinates that do not
+    /// pass check_range, and for rows without a rotation; last() is then the frame before.
+    const Frame& frame(const FrameArrays& arrays, const Frame* base = nullptr);
+    /// The last frame, which later calls do not overwrite as long as somebody holds it; null before the
+    /// first.
     std::shared_ptr<const Frame> last() const { return frames_.front(); }
 
 private:
     /// Makes a frame that nobody else holds the first of frames_.
     void take_unused();
-    void set_poses(const GivenRows& poses);
+    void fill(const FrameArrays& arrays, const Frame* base);
+    void set_poses(const FrameArrays& arrays);
+    void set_pose(std::size_t body, const double* row);
     void set_vertices(std::size_t body, const GivenRows& vertices);
 
     const Scene& scene_;

@@ -48,6 +48,7 @@ std::optional<Entries> entries_of(const Collider& collider, nb::handle vertices)
 struct FrameObjects {
     nb::handle poses;
     Entries vertices;
+    std::vector<std::uint32_t> posed{};
 };
 
 template<class ReadRows>
@@ -62,6 +63,7 @@ Input make_input(const Collider& collider, const FrameObjects& frame, const std:
     };
     const auto arrays = [&](const FrameObjects& objects, bool of_next) {
         FrameArrays result;
+        result.posed = objects.posed;
         if (!objects.poses.is_none())
             result.poses = rows(objects.poses, {collider.devices(), 7, last_gpu_type, of_next});
         result.vertices.resize(objects.vertices.size());
@@ -86,6 +88,18 @@ std::optional<Input> input_of(const Collider& collider, const FrameArguments& fr
     std::optional<FrameObjects> successor;
     if (is_given(next)) successor = {next.poses, std::move(*next_entries)};
     return make_input(collider, {frame.poses, std::move(*entries)}, successor, given_rows);
+}
+
+Input update_of(const Collider& collider, const ChangeArguments& frame,
+                const std::optional<ChangeArguments>& next) {
+    const auto objects = [&](const ChangeArguments& changes) {
+        return FrameObjects{changes.poses, entries_of(collider, changes.vertices).value_or(Entries()),
+                            changes.posed};
+    };
+    auto input =
+        make_input(collider, objects(frame), next ? std::optional(objects(*next)) : std::nullopt, given_rows);
+    input.updates = true;
+    return input;
 }
 
 Input device_input(const Collider& collider, const FrameArguments& frame, const FrameArguments& next) {

@@ -171,6 +171,11 @@ class Collider:
         Runs a frame. vertices, next_vertices: a list with one array per deformable body, or {number: array}. Returns None for any other container.
         """
 
+    def update(self, frame: tuple[Sequence[int], object | None, object | None], next: tuple[Sequence[int], object | None, object | None] | None, body_pairs: Sequence[tuple[int, int]] | None) -> Answer:
+        """
+        Runs the last frame with changes: numbers of bodies, an array of their poses or None, and {number: vertices} or None. next: changes from that frame to its successor.
+        """
+
     def run_device_input(self, poses: object | None, vertices: list, next_poses: object | None = None, next_vertices: list | None = None) -> Answer:
         """
         Runs a frame whose arrays are all in memory of the device; for device host, in host memory. vertices and next_vertices have one entry per body.

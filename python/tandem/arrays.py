@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Converts users' arrays in host memory to the form that the library reads: contiguous rows of one type."""
+from collections.abc import Mapping
+
 import numpy
 
 POSE = 7  # columns of a pose: tx ty tz qw qx qy qz
@@ -12,7 +14,9 @@ def host_array(value, what, columns, dtype=numpy.float64):
     """`value` as a contiguous array (rows, columns) of `dtype`; poses can also be (n, 4, 4) matrices. A NumPy array, or a host array with __dlpack__, keeps its memory
     where it has this form already; otherwise the result is a copy. Raises ValueError or TypeError, whose one-line message begins
     with `what`."""
-    array = _numpy_array(value, what)
+    if isinstance(value, Mapping):
+        raise TypeError(f"{what}: is a mapping of some bodies, which update() takes; give all bodies")
+    array = numpy_array(value, what)
     if columns == POSE and array.ndim == 3 and array.shape[1:] == (4, 4):
         array = _rows_of_matrices(array, what)
     if array.ndim != 2 or array.shape[1] != columns:
@@ -40,7 +44,7 @@ def stream_address(stream):
     return stream.__index__()
 
 
-def _numpy_array(value, what):
+def numpy_array(value, what):
     """`value` as a NumPy array, without a copy if it is an array already."""
     if any(isinstance(one, numpy.ma.MaskedArray) for one in (value, *(value if isinstance(value, (list, tuple)) else ()))):
         raise ValueError(f"{what}: is a masked array, whose mask would be lost; give .filled(value), or .data if every number counts")

@@ -2,15 +2,16 @@
 """Finds candidate pairs and contacts of tetrahedral meshes, frame by frame, on any device of tandem."""
 from __future__ import annotations
 
-import os
 from typing import Any, Iterable, Mapping, NamedTuple, Sequence
 
 import numpy
 
 from . import _core
-from ._core import Mesh
+from .arguments import bits_of_bodies, body_pairs_of, flags_of, list_of, lists_of, number_of, text_of
 from .arrays import stream_address
+from .changes import changes_of
 from .meshes import mesh_of
+from .worlds import Numbering
 
 
 class Digest(NamedTuple):
@@ -146,13 +147,14 @@ class Collider:
                  meets: Sequence[Iterable[int] | None] | None = None, never_meet: Iterable[Sequence[int]] = (),
                  self_collision: bool | str = False, duplicates: str | None = None, weld: float | None = None, preset: str = "", stream: Any = None,
                  **settings: Any) -> None:
-        all_meshes = [mesh_of(mesh, f"meshes[{i}]", duplicates, weld) for i, mesh in enumerate(_list(meshes, "meshes"))]
+        all_meshes = [mesh_of(mesh, f"meshes[{i}]", duplicates, weld) for i, mesh in enumerate(list_of(meshes, "meshes"))]
         mesh_of_body = list(range(len(all_meshes)))
         if bodies is not None:
-            mesh_of_body = [_number(value, f"bodies[{i}]") for i, value in enumerate(_list(bodies, "bodies"))]
-        flags = _flags(deformable, len(mesh_of_body))
+            mesh_of_body = [number_of(value, f"bodies[{i}]") for i, value in enumerate(list_of(bodies, "bodies"))]
+        flags = flags_of(deformable, len(mesh_of_body))
         self._bodies = len(flags)
         self._deformable = [body for body, flag in enumerate(flags) if flag]
+        self._numbering = Numbering(self._bodies, None, self._deformable)
         for what, text in (("algorithm", algorithm), ("device", device), ("preset", preset)):
             if not isinstance(text, str):
                 raise TypeError(f"{what}: type {type(text).__name__}; expected a name")
@@ -160,14 +162,14 @@ class Collider:
             if "self" in settings:
                 raise ValueError("self_collision and setting self are the same; give one of them")
             settings["self"] = "on" if self_collision is True else self_collision
-        texts = {name: _text(value, name) for name, value in settings.items()}
-        filters = list(zip(_bits_of_bodies(groups, "groups", 1, len(flags)), _bits_of_bodies(meets, "meets", 2**32 - 1, len(flags))))
-        apart = _body_pairs(never_meet, "never_meet", len(flags))
+        texts = {name: text_of(value, name) for name, value in settings.items()}
+        filters = list(zip(bits_of_bodies(groups, "groups", 1, len(flags)), bits_of_bodies(meets, "meets", 2**32 - 1, len(flags))))
+        apart = body_pairs_of(never_meet, "never_meet", len(flags))
         address = None if stream is None else stream_address(stream)
         options = _core.ColliderOptions(mesh_of_body, flags, algorithm, preset, device, texts, filters, apart, address)
         self._core = _core.Collider(all_meshes, options, stream)
-        self._arguments = {"algorithm": algorithm, "device": device, "bodies": mesh_of_body, "deformable": self._deformable, "groups": _lists(groups),
-                           "meets": _lists(meets), "never_meet": apart, "duplicates": duplicates, "weld": weld, "preset": preset, **texts}
+        self._arguments = {"algorithm": algorithm, "device": device, "bodies": mesh_of_body, "deformable": self._deformable, "groups": lists_of(groups),
+                           "meets": lists_of(meets), "never_meet": apart, "duplicates": duplicates, "weld": weld, "preset": preset, **texts}
 
     def run(self, poses: Any = None, vertices: Any = None, *, next_poses: Any = None, next_vertices: Any = None,
             body_pairs: Iterable[Sequence[int]] | None = None) -> Answer:
@@ -192,11 +194,29 @@ class Collider:
         them in place, after the work that their library has enqueued and before this call returns. Both kinds may be mixed and give the same
         answer, bit for bit. With arrays on the GPU, body pairs are found on the device, whatever setting broad is. Raises ValueError or
         TypeError for wrong shapes, types and numbers that are not finite, tandem.DeviceError otherwise."""
-        pairs = None if body_pairs is None else sorted({(min(pair), max(pair)) for pair in _body_pairs(body_pairs, "body_pairs", self._bodies)})
+        pairs = self._pairs_to_walk(body_pairs)
         answer = self._core.run(poses, vertices, next_poses, next_vertices, pairs)
         if answer is None:
             answer = self._core.run(poses, self._by_body(vertices, "vertices"), next_poses, self._by_body(next_vertices, "next_vertices"), pairs)
         return Answer(answer)
+
+    def update(self, poses: Mapping[int, Any] | None = None, vertices: Mapping[int, Any] | None = None, *, next_poses: Mapping[int, Any] | None = None,
+               next_vertices: Mapping[int, Any] | None = None, body_pairs: Iterable[Sequence[int]] | None = None) -> Answer:
+        """Finds the candidate pairs and contacts of the last frame with some bodies changed: the others keep the poses and vertices of the last run(),
+        update() or tune(), of which the first was of all bodies. The answer is that of run() for the whole frame, and the device does the same work;
+        the caller converts and passes less.
+
+        poses: {body: row of 7 numbers or 4 x 4 matrix}, of bodies that are not deformable. vertices: {body: (n, 3)}, of deformable bodies.
+        next_poses, next_vertices: with motion="linear", changes from this frame to its successor; at least one of them, of which {} changes nothing.
+        body_pairs: as in run().
+
+        Arrays are in host memory, also those of the last frame. Raises ValueError or TypeError as run() does, and before the first frame; a
+        refused call leaves the last frame unchanged, except for a refused successor."""
+        frame = changes_of(poses, vertices, "", self._numbering)
+        following = None
+        if next_poses is not None or next_vertices is not None:
+            following = changes_of(next_poses, next_vertices, "next_", self._numbering)
+        return Answer(self._core.update(frame, following, self._pairs_to_walk(body_pairs)))
 
     def tune(self, poses: Any = None, vertices: Any = None, seconds: float = 2.0, *, next_poses: Any = None, next_vertices: Any = None) -> list[Trial]:
         """With algorithm="auto": times the candidates on a frame for about `seconds` of frames, and selects the fastest for later runs. Compilation
@@ -259,12 +279,18 @@ class Collider:
     def __repr__(self) -> str:
         return f"<tandem.Collider: {self._bodies} bodies, {self.algorithm} on {'+'.join(self.devices)}>"
 
+    def _pairs_to_walk(self, body_pairs):
+        """Ascending pairs of numbers a <= b; None: none are given."""
+        if body_pairs is None:
+            return None
+        return sorted({(min(pair), max(pair)) for pair in body_pairs_of(body_pairs, "body_pairs", self._bodies)})
+
     def _by_body(self, vertices, what):
         """{number: array} from any mapping or sequence of arrays; None: none. `what`: the name of the argument."""
         if vertices is None:
             return None
         if not isinstance(vertices, Mapping):
-            rows = _list(vertices, what)
+            rows = list_of(vertices, what)
         if not self._deformable:
             raise ValueError(f"{what}: no body is deformable; make the collider with deformable=True or numbers of bodies")
         if not isinstance(vertices, Mapping):
@@ -275,76 +301,3 @@ class Collider:
             if body not in self._deformable:
                 raise ValueError(f"{what}: {body!r} is not a deformable body (those are: {', '.join(map(str, self._deformable))})")
         return {int(body): rows for body, rows in vertices.items()}
-
-
-def _list(value, what):
-    if isinstance(value, (str, bytes, os.PathLike, Mesh)):
-        raise TypeError(f"{what}: type {type(value).__name__}; expected a list")
-    try:
-        return list(value)
-    except TypeError:
-        raise TypeError(f"{what}: type {type(value).__name__}; expected a list") from None
-
-
-def _number(value, what, of="mesh"):
-    try:
-        number = value.__index__()
-    except AttributeError:
-        raise TypeError(f"{what}: type {type(value).__name__}; expected the number of a {of}") from None
-    if not 0 <= number < 2**32:
-        raise ValueError(f"{what}: {number} is not the number of a {of}; numbers start at 0")
-    return number
-
-
-def _flags(deformable, bodies):
-    if isinstance(deformable, (bool, numpy.bool_)):
-        return [bool(deformable)] * bodies
-    flags = [False] * bodies
-    for i, value in enumerate(_list(deformable, "deformable")):
-        number = _number(value, f"deformable[{i}]", "body")
-        if number >= bodies:
-            raise ValueError(f"deformable[{i}]: {number} is not the number of a body; there are {bodies}, numbered from 0")
-        flags[number] = True
-    return flags
-
-
-def _bits_of_bodies(lists, what, default, bodies):
-    if lists is None:
-        return [default] * bodies
-    given = _list(lists, what)
-    if len(given) != bodies:
-        raise ValueError(f"{what}: {len(given)} lists for {bodies} bodies; give one per body")
-    return [default if groups is None else _bits(groups, f"{what}[{body}]") for body, groups in enumerate(given)]
-
-
-def _bits(groups, what):
-    bits = 0
-    for group in _list(groups, what):
-        if not hasattr(group, "__index__"):
-            raise TypeError(f"{what}: type {type(group).__name__}; expected the number of a group")
-        if not 0 <= group.__index__() < 32:
-            raise ValueError(f"{what}: {group} is not the number of a group; they are 0 to 31")
-        bits |= 1 << group.__index__()
-    return bits
-
-
-def _body_pairs(pairs, what, bodies):
-    result = []
-    for i, pair in enumerate(_list(pairs, what)):
-        numbers = [_number(value, f"{what}[{i}]", "body") for value in _list(pair, f"{what}[{i}]")]
-        if len(numbers) != 2 or max(numbers) >= bodies:
-            raise ValueError(f"{what}[{i}]: expected two bodies of {bodies}, numbered from 0")
-        result.append(tuple(numbers))
-    return result
-
-
-def _lists(groups):
-    return None if groups is None else [None if one is None else list(one) for one in groups]
-
-
-def _text(value, name):
-    if isinstance(value, (bool, numpy.bool_)):
-        return "yes" if value else "no"
-    if isinstance(value, (str, int, numpy.integer)):
-        return str(value)
-    raise TypeError(f"setting {name}: type {type(value).__name__}; expected a word or an integer")

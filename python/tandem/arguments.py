@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: MIT
+"""Checks of a collider's arguments, as numbers of bodies, groups and settings. All raise ValueError or TypeError, whose one-line message begins
+with the name of the argument."""
+from __future__ import annotations
+
+import os
+
+import numpy
+
+from ._core import Mesh
+
+
+def list_of(value, what):
+    """The elements of any iterable except texts, paths and meshes."""
+    if isinstance(value, (str, bytes, os.PathLike, Mesh)):
+        raise TypeError(f"{what}: type {type(value).__name__}; expected a list")
+    try:
+        return list(value)
+    except TypeError:
+        raise TypeError(f"{what}: type {type(value).__name__}; expected a list") from None
+
+
+def number_of(value, what, of="mesh"):
+    """An integer from 0 on, of any type with __index__."""
+    try:
+        number = value.__index__()
+    except AttributeError:
+        raise TypeError(f"{what}: type {type(value).__name__}; expected the number of a {of}") from None
+    if not 0 <= number < 2**32:
+        raise ValueError(f"{what}: {number} is not the number of a {of}; numbers start at 0")
+    return number
+
+
+def flags_of(deformable, bodies):
+    """One bool per body, of True, False or the numbers of some bodies."""
+    if isinstance(deformable, (bool, numpy.bool_)):
+        return [bool(deformable)] * bodies
+    flags = [False] * bodies
+    for i, value in enumerate(list_of(deformable, "deformable")):
+        number = number_of(value, f"deformable[{i}]", "body")
+        if number >= bodies:
+            raise ValueError(f"deformable[{i}]: {number} is not the number of a body; there are {bodies}, numbered from 0")
+        flags[number] = True
+    return flags
+
+
+def bits_of_bodies(lists, what, default, bodies):
+    """The bits of a list of groups for each body; `default` for None."""
+    if lists is None:
+        return [default] * bodies
+    given = list_of(lists, what)
+    if len(given) != bodies:
+        raise ValueError(f"{what}: {len(given)} lists for {bodies} bodies; give one per body")
+    return [default if groups is None else _bits(groups, f"{what}[{body}]") for body, groups in enumerate(given)]
+
+
+def _bits(groups, what):
+    bits = 0
+    for group in list_of(groups, what):
+        if not hasattr(group, "__index__"):
+            raise TypeError(f"{what}: type {type(group).__name__}; expected the number of a group")
+        if not 0 <= group.__index__() < 32:
+            raise ValueError(f"{what}: {group} is not the number of a group; they are 0 to 31")
+        bits |= 1 << group.__index__()
+    return bits
+
+
+def body_pairs_of(pairs, what, bodies):
+    """A list of pairs of numbers of bodies."""
+    result = []
+    for i, pair in enumerate(list_of(pairs, what)):
+        numbers = [number_of(value, f"{what}[{i}]", "body") for value in list_of(pair, f"{what}[{i}]")]
+        if len(numbers) != 2 or max(numbers) >= bodies:
+            raise ValueError(f"{what}[{i}]: expected two bodies of {bodies}, numbered from 0")
+        result.append(tuple(numbers))
+    return result
+
+
+def lists_of(groups):
+    """`groups` or `meets` as lists, which can be pickled."""
+    return None if groups is None else [None if one is None else list(one) for one in groups]
+
+
+def text_of(value, name):
+    """The text of a setting."""
+    if isinstance(value, (bool, numpy.bool_)):
+        return "yes" if value else "no"
+    if isinstance(value, (str, int, numpy.integer)):
+        return str(value)
+    raise TypeError(f"setting {name}: type {type(value).__name__}; expected a word or an integer")
