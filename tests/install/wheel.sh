@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# wheel.sh: builds the wheel of the checkout with pip, for this processor only and without MPI and Embree. auditwheel puts GMP, oneTBB
-# and fmt into it, with their licences, and gives it a manylinux tag; OpenCL's loader stays the machine's own. Then installs it in an
-# empty virtual environment, where its Collider finds the pairs of two tetrahedra and reports an unknown device. Needs PyPI.
+# wheel.sh: builds the wheel of the checkout with pip, for this processor only and without MPI and Embree. auditwheel puts GMP, oneTBB,
+# fmt, lz4 and liblzma into it and gives it a manylinux tag; OpenCL's loader stays the machine's own. The licences of all bundled
+# libraries are added. Then installs it in an empty virtual environment, where its Collider finds the pairs of two tetrahedra and
+# reports an unknown device. Needs PyPI, and Debian for the licences.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 work=$(mktemp -d)
@@ -10,24 +11,35 @@ trap 'rm -rf "$work"' EXIT
 export PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_ROOT_USER_ACTION=ignore
 /usr/bin/python3 -m venv "$work/tools"
 "$work/tools/bin/pip" install --quiet -r tests/install/wheel-requirements.txt
-PYTHONPATH=$PWD/.cache/python /usr/bin/python3 -m pip wheel --quiet --no-deps --no-build-isolation --wheel-dir "$work" \
+SECONDS=0
+PYTHONPATH=$PWD/.cache/python /usr/bin/python3 -m pip wheel --verbose --no-deps --no-build-isolation --wheel-dir "$work" \
   --config-settings=cmake.define.TANDEM_LEVELS=native --config-settings=cmake.define.TANDEM_MPI=OFF \
-  --config-settings=cmake.define.CMAKE_DISABLE_FIND_PACKAGE_embree=ON --config-settings=build-dir=build/wheel .
+  --config-settings=cmake.define.CMAKE_DISABLE_FIND_PACKAGE_embree=ON --config-settings=build-dir=build/wheel . &>"$work/log" ||
+  { cat "$work/log" >&2; exit 1; }
+grep 'compiling the library takes about' "$work/log"
+echo "compiled in $SECONDS s"
 
-# Licences of what auditwheel bundles, from Debian's packages.
-"$work/tools/bin/wheel" unpack --dest "$work/unpacked" "$work"/tandem_bvh-*.whl
+PATH=$work/tools/bin:$PATH "$work/tools/bin/auditwheel" repair --exclude libOpenCL.so.1 --wheel-dir "$work/repaired" "$work"/tandem_bvh-*.whl
+
+# The copyright file of each bundled library's Debian package, and the licences that these files name.
+"$work/tools/bin/wheel" unpack --dest "$work/unpacked" "$work"/repaired/*.whl >/dev/null
 tree=$(echo "$work"/unpacked/*)
-for package in libgmp10 libtbb12 libfmt9; do
-  install -D -m 644 "/usr/share/doc/$package/copyright" "$(echo "$tree"/*.dist-info)/licenses/$package"
-done
+licences=$(echo "$tree"/*.dist-info)/licenses
+for library in "$tree"/*.libs/*; do
+  name=$(sed -E 's/-[0-9a-f]{8}\././' <<<"${library##*/}") # as before auditwheel
+  package=$(dpkg --search "*/$name" | sed -n '1s/:.*//p')
+  install -D -m 644 "/usr/share/doc/$package/copyright" "$licences/$package"
+  grep -oE '/usr/share/common-licenses/[A-Z][A-Za-z0-9.-]*[0-9]' "$licences/$package" || true
+done | sort -u | xargs install -m 644 -t "$licences"
 mkdir "$work/licensed"
 "$work/tools/bin/wheel" pack --dest-dir "$work/licensed" "$tree" >/dev/null
-PATH=$work/tools/bin:$PATH "$work/tools/bin/auditwheel" repair --exclude libOpenCL.so.1 --wheel-dir "$work/repaired" "$work"/licensed/*.whl
-wheel=$(echo "$work"/repaired/*.whl)
+wheel=$(echo "$work"/licensed/*.whl)
 echo "$(basename "$wheel"): $(stat -c %s "$wheel") bytes"
+[[ $wheel == *-manylinux_* ]]
 listing=$(/usr/bin/python3 -m zipfile -l "$wheel")
 grep -E '\.libs/|licenses/|_core' <<<"$listing"
-for library in gmp tbb fmt; do grep -q "\.libs/lib$library" <<<"$listing"; done
+for library in gmp tbb fmt lz4 lzma; do grep -q "\.libs/lib$library" <<<"$listing"; done
+for licence in libgmp10 libtbb12 libfmt9 liblz4-1 liblzma5 LGPL-3 Apache-2.0; do grep -q "licenses/$licence " <<<"$listing"; done
 if grep -E 'libOpenCL|libmpi|libembree' <<<"$listing"; then echo "wheel.sh: must not be bundled" >&2; exit 1; fi
 
 /usr/bin/python3 -m venv "$work/empty"
