@@ -63,10 +63,10 @@ std::size_t cuda_number(const std::string& device) {
 using BodyPairs = std::optional<std::span<const BodyPair>>;
 
 /// HostInput has checked frames of the host; the device checks those in its memory.
-FrameResult run_frame(Session& session, const FrameInput& frames, const BodyPairs& pairs = {}) {
+FrameResult run_among(Session& session, const FrameInput& frames, const BodyPairs& pairs) {
     return pairs ? session.run_unchecked(frames, *pairs) : session.run_unchecked(frames);
 }
-FrameResult run_frame(Session& session, const DeviceFrameInput& frames, const BodyPairs& pairs = {}) {
+FrameResult run_among(Session& session, const DeviceFrameInput& frames, const BodyPairs& pairs) {
     if (!pairs) return session.run(frames);
     return frames.next == nullptr ? session.run(frames.frame, *pairs)
                                   : session.run(frames.frame, *frames.next, *pairs);
@@ -133,6 +133,9 @@ void Collider::prepare(const ColliderOptions& options) {
     precision_ = geometry_of(settings).precision;
     motion_ = settings[parameters::motion];
     origin_ = geometry_of(settings).origin;
+    if (options.worlds > 1)
+        world_pairs_.emplace(scene_, geometry_of(settings), settings[parameters::broad],
+                             settings[parameters::self], options.worlds);
     host_input_.emplace(scene_, precision_);
     check_range(scene_, rest_frame(scene_), precision_);
     if (traversal == nullptr) return;
@@ -154,8 +157,33 @@ void Collider::begin_at(const Input& input) {
     }
 }
 
+std::optional<std::vector<BodyPair>> Collider::world_pairs(const FrameInput& frames) const {
+    return world_pairs_ ? std::optional(world_pairs_->pairs(frames)) : std::nullopt;
+}
+
+std::optional<std::vector<BodyPair>> Collider::world_pairs(const DeviceFrameInput& frames) const {
+    if (!world_pairs_) return std::nullopt;
+    const auto checked = [&](const DeviceFrame& frame) {
+        auto on_host = downloaded(*devices_.front(), scene_, frame);
+        check_range(scene_, on_host, precision_);
+        return on_host;
+    };
+    const auto frame = checked(frames.frame);
+    if (frames.next == nullptr) return world_pairs_->pairs(frame);
+    const auto next = of_successor([&] { return checked(*frames.next); });
+    return world_pairs_->pairs({frame, &next});
+}
+
 template<class Frames>
-Run Collider::run_frames(const Frames& frames, BodyPairs body_pairs) {
+FrameResult Collider::run_frame(Session& session, const Frames& frames,
+                                const std::optional<std::vector<BodyPair>>& given) const {
+    if (given) return run_among(session, frames, *given);
+    const auto found = world_pairs(frames);
+    return run_among(session, frames, found ? BodyPairs(*found) : std::nullopt);
+}
+
+template<class Frames>
+Run Collider::run_frames(const Frames& frames, const std::optional<std::vector<BodyPair>>& body_pairs) {
     if (!session_) choose_for(frames, seconds_of_choosing);
     const auto begin = std::chrono::steady_clock::now();
     auto result = run_frame(*session_, frames, body_pairs);
@@ -168,9 +196,8 @@ Run Collider::run(const Input& input) {
     const auto own = lock();
     check(input);
     begin_at(input);
-    const auto pairs = input.body_pairs ? BodyPairs(*input.body_pairs) : std::nullopt;
-    if (input.on_device) return run_frames(device_frames(input), pairs);
-    auto run = run_frames(host_frames(input), pairs);
+    if (input.on_device) return run_frames(device_frames(input), input.body_pairs);
+    auto run = run_frames(host_frames(input), input.body_pairs);
     run.frame = host_input_->last();
     return run;
 }
@@ -178,7 +205,8 @@ Run Collider::run(const Input& input) {
 template<class Frames>
 std::vector<Trial> Collider::choose_for(const Frames& frames, double seconds) {
     auto chosen = choose(
-        candidates_, scene_, [&](Session& session) { return run_frame(session, frames); }, seconds);
+        candidates_, scene_, [&](Session& session) { return run_frame(session, frames, std::nullopt); },
+        seconds);
     session_ = std::move(chosen.session);
     algorithm_ = chosen.algorithm->name();
     return std::move(chosen.trials);

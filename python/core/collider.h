@@ -7,6 +7,7 @@
 #include "python/core/device_input.h"
 #include "python/core/host_input.h"
 #include "python/core/process.h"
+#include "python/core/world_pairs.h"
 
 #include <algorithm>
 #include <memory>
@@ -23,6 +24,7 @@ struct ColliderOptions {
     SettingTexts settings;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> groups;     ///< Body::groups, Body::meets
     std::vector<std::pair<std::uint32_t, std::uint32_t>> never_meet; ///< in any order
+    std::size_t worlds = 1;               ///< divides the bodies; those of a world follow each other
     std::optional<std::uintptr_t> stream; ///< a CUstream of the device, a CUDA one; 0: default stream
 };
 
@@ -87,8 +89,15 @@ private:
     /// A checked input as frames. The next call overwrites them.
     FrameInput host_frames(const Input& input);
     DeviceFrameInput device_frames(const Input& input);
+    /// The body pairs of all worlds; none if there is one world, of which the session finds them.
+    std::optional<std::vector<BodyPair>> world_pairs(const FrameInput& frames) const;
+    /// The same by a download of the frames. Throws InputError as the session does for them.
+    std::optional<std::vector<BodyPair>> world_pairs(const DeviceFrameInput& frames) const;
     template<class Frames>
-    Run run_frames(const Frames& frames, std::optional<std::span<const BodyPair>> body_pairs);
+    FrameResult run_frame(Session& session, const Frames& frames,
+                          const std::optional<std::vector<BodyPair>>& given) const;
+    template<class Frames>
+    Run run_frames(const Frames& frames, const std::optional<std::vector<BodyPair>>& body_pairs);
     template<class Frames>
     std::vector<Trial> choose_for(const Frames& frames, double seconds);
 
@@ -100,6 +109,7 @@ private:
     std::vector<Cell> candidates_; ///< candidates of algorithm auto
     Precision precision_ = Precision::fp32;
     Motion motion_ = Motion::none;
+    std::optional<WorldPairs> world_pairs_; ///< of several worlds
     Origin origin_ = Origin::world;
     std::optional<HostInput> host_input_, next_host_input_; ///< of frames, and of their successors
     std::optional<DeviceInput> device_input_;

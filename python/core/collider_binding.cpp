@@ -104,14 +104,15 @@ std::uintptr_t queue(const Collider& collider) {
 
 void bind_options(nb::module_& module) {
     nb::class_<ColliderOptions>(module, "ColliderOptions",
-                                "bodies, deformable, groups: one entry per body, of groups the bits of its "
-                                "groups and of those it meets. stream: an address.")
+                                "bodies, deformable, groups: one entry per body of all worlds, of groups the "
+                                "bits of its groups and of those it meets. stream: an address.")
         .def(nb::init<std::vector<std::uint32_t>, std::vector<bool>, std::string, std::string, std::string,
                       SettingTexts, std::vector<std::pair<std::uint32_t, std::uint32_t>>,
-                      std::vector<std::pair<std::uint32_t, std::uint32_t>>, std::optional<std::uintptr_t>>(),
+                      std::vector<std::pair<std::uint32_t, std::uint32_t>>, std::size_t,
+                      std::optional<std::uintptr_t>>(),
              nb::arg("bodies"), nb::arg("deformable"), nb::arg("algorithm"), nb::arg("preset"),
              nb::arg("device"), nb::arg("settings"), nb::arg("groups"), nb::arg("never_meet"),
-             nb::arg("stream").none());
+             nb::arg("worlds"), nb::arg("stream").none());
 }
 
 } // namespace

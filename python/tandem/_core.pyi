@@ -156,10 +156,10 @@ def algorithms() -> list[str]:
 
 class ColliderOptions:
     """
-    bodies, deformable, groups: one entry per body, of groups the bits of its groups and of those it meets. stream: an address.
+    bodies, deformable, groups: one entry per body of all worlds, of groups the bits of its groups and of those it meets. stream: an address.
     """
 
-    def __init__(self, bodies: Sequence[int], deformable: Sequence[bool], algorithm: str, preset: str, device: str, settings: Mapping[str, str], groups: Sequence[tuple[int, int]], never_meet: Sequence[tuple[int, int]], stream: int | None) -> None: ...
+    def __init__(self, bodies: Sequence[int], deformable: Sequence[bool], algorithm: str, preset: str, device: str, settings: Mapping[str, str], groups: Sequence[tuple[int, int]], never_meet: Sequence[tuple[int, int]], worlds: int, stream: int | None) -> None: ...
 
 class Collider:
     """Implementation of tandem.Collider, which checks its input."""

@@ -14,8 +14,7 @@ def host_array(value, what, columns, dtype=numpy.float64):
     """`value` as a contiguous array (rows, columns) of `dtype`; poses can also be (n, 4, 4) matrices. A NumPy array, or a host array with __dlpack__, keeps its memory
     where it has this form already; otherwise the result is a copy. Raises ValueError or TypeError, whose one-line message begins
     with `what`."""
-    if isinstance(value, Mapping):
-        raise TypeError(f"{what}: is a mapping of some bodies, which update() takes; give all bodies")
+    refuse_mapping(value, what)
     array = numpy_array(value, what)
     if columns == POSE and array.ndim == 3 and array.shape[1:] == (4, 4):
         array = _rows_of_matrices(array, what)
@@ -29,6 +28,12 @@ def host_array(value, what, columns, dtype=numpy.float64):
     elif array.dtype.kind not in "iuf":
         raise TypeError(f"{what}: type {array.dtype}; expected real numbers ({numpy.dtype(dtype)} is read without a copy)")
     return numpy.require(array, dtype, "CA")
+
+
+def refuse_mapping(value, what):
+    """Raises TypeError for a mapping, where arrays of all bodies are expected."""
+    if isinstance(value, Mapping):
+        raise TypeError(f"{what}: is a mapping of some bodies, which update() takes; give all bodies")
 
 
 def stream_address(stream):

@@ -23,7 +23,7 @@ class Digest(NamedTuple):
 
 class Contacts(NamedTuple):
     """Contacts of a frame, sorted by pair and feature. The columns are views of one array of records."""
-    pairs: numpy.ndarray     #: (n, 4) int32: body a, tetrahedron a, body b, tetrahedron b; a before b
+    pairs: numpy.ndarray     #: (n, 4) int32: body a, tetrahedron a, body b, tetrahedron b; a before b. With worlds (n, 5), the world first
     features: numpy.ndarray  #: (n,) uint32: number of the contact within its pair (algorithms/narrow_phase)
     points: numpy.ndarray    #: (n, 3) float64: world coordinates, in the meshes' unit
     normals: numpy.ndarray   #: (n, 3) float64: unit vectors that point out of body a
@@ -39,10 +39,10 @@ class Trial(NamedTuple):
 
 class Answer:
     """Result of one run. Later runs of the collider do not change it. It keeps the collider's memory until it is deleted."""
-    __slots__ = ("_core", "__weakref__")
+    __slots__ = ("_core", "_numbering", "__weakref__")
 
-    def __init__(self, core: _core.Answer) -> None:
-        self._core = core
+    def __init__(self, core: _core.Answer, numbering: Numbering | None = None) -> None:
+        self._core, self._numbering = core, numbering or Numbering()
 
     @property
     def count(self) -> int:
@@ -91,23 +91,25 @@ class Answer:
         """Candidate pairs: rows body a, tetrahedron a, body b, tetrahedron b, numbered from 0 in the order of the input, body a < body b. In
         pairs of one body (self_collision), tetrahedron a < tetrahedron b.
 
-        Returns an (n, 4) int32 NumPy array, sorted by its columns. With `on_device`, returns an object with __dlpack__ over (n, 4) int32 in
+        Returns an (n, 4) int32 NumPy array, sorted by its columns. With `worlds` it is (n, 5): the number of the world comes first, and
+        bodies are numbered within it; only rows `on_device` have 4 columns there too, with body numbers world * bodies + body. With `on_device`, returns an object with __dlpack__ over (n, 4) int32 in
         memory of the device, in the same order, for which the first call sorts them there. torch.from_dlpack, cupy.from_dlpack and (device host) numpy.from_dlpack read it without a copy.
         Every call returns the same memory. The rows are complete when the call returns, so that any stream may read them. The memory lives
         as long as an array over it. These libraries do not support OpenCL memory, for which `on_device` raises ValueError."""
-        return self._core.pairs_on_device() if on_device else self._core.pairs()
+        return self._core.pairs_on_device() if on_device else self._numbering.rows_of(self._core.pairs())
 
     def meeting(self) -> numpy.ndarray:
-        """Those of pairs() whose tetrahedra meet: (n, 4) int32, sorted. Candidate pairs have overlapping bounds, these have a common point of the closed
+        """Those of pairs() whose tetrahedra meet: rows of the same columns, sorted. Candidate pairs have overlapping bounds, these have a common point of the closed
         tetrahedra. The decision is exact for the vertices that the device has: moved and rounded in the collider's precision. It takes no contact rule
         and no boundary faces, so that pairs inside of bodies are found too. It runs on the host, on all cores. Raises ValueError with
         output="count" or "digest", with placement="exact", and if the frame was in memory of a device."""
-        return self._core.meeting()
+        return self._numbering.rows_of(self._core.meeting())
 
     def contacts(self) -> Contacts:
         """Contacts of the pairs (see Contacts), in host memory. The contact rule determines which pairs have some: the default, "opposing", needs
         boundary faces of both tetrahedra, so that a body wholly inside another has none (docs/user/python.md)."""
-        return Contacts(*self._core.contacts())
+        pairs, *columns = self._core.contacts()
+        return Contacts(self._numbering.rows_of(pairs), *columns)
 
     def __repr__(self) -> str:
         return f"<tandem.Answer: {self.count} pairs, {self.contact_count} contacts>"
@@ -130,6 +132,11 @@ class Collider:
         setting self.
     duplicates, weld: those of tandem.make_mesh, for all meshes. None: a tandem.Mesh keeps its own, and others have "merge" and no welding. What a
         mesh has of duplicates and coincident vertices is told once, as a UserWarning.
+    worlds: N: the bodies exist N times, in N independent states that one call collides; bodies of two worlds never meet. All options above are those
+        of one world. Poses are then (N, bodies, 7) or (N, bodies, 4, 4), vertices (N, n, 3) for each deformable body, body_pairs rows of
+        (world, body, body), and keys of update() pairs (world, body). Rows of answers begin with the number of the world. In messages of poses, row
+        world * bodies + body is meant. Body pairs are found on the host, world by world on all cores, so that frames in memory of the device are
+        read back.
     stream: a CUDA stream of the device on which the collider enqueues its commands, in order with those of the application. Either
         cupy.cuda.get_current_stream() or torch.cuda.current_stream(), which the collider keeps alive, or the address of a stream that must
         outlive the collider. None: the collider makes its own stream.
@@ -145,7 +152,7 @@ class Collider:
     def __init__(self, meshes: Sequence[Any], /, algorithm: str = "tiled", device: str = "host", *, bodies: Iterable[int] | None = None,
                  deformable: bool | Iterable[int] = False, groups: Sequence[Iterable[int]] | None = None,
                  meets: Sequence[Iterable[int] | None] | None = None, never_meet: Iterable[Sequence[int]] = (),
-                 self_collision: bool | str = False, duplicates: str | None = None, weld: float | None = None, preset: str = "", stream: Any = None,
+                 self_collision: bool | str = False, duplicates: str | None = None, weld: float | None = None, worlds: int | None = None, preset: str = "", stream: Any = None,
                  **settings: Any) -> None:
         all_meshes = [mesh_of(mesh, f"meshes[{i}]", duplicates, weld) for i, mesh in enumerate(list_of(meshes, "meshes"))]
         mesh_of_body = list(range(len(all_meshes)))
@@ -154,7 +161,7 @@ class Collider:
         flags = flags_of(deformable, len(mesh_of_body))
         self._bodies = len(flags)
         self._deformable = [body for body, flag in enumerate(flags) if flag]
-        self._numbering = Numbering(self._bodies, None, self._deformable)
+        self._numbering = numbering = Numbering(self._bodies, worlds, self._deformable)
         for what, text in (("algorithm", algorithm), ("device", device), ("preset", preset)):
             if not isinstance(text, str):
                 raise TypeError(f"{what}: type {type(text).__name__}; expected a name")
@@ -166,10 +173,12 @@ class Collider:
         filters = list(zip(bits_of_bodies(groups, "groups", 1, len(flags)), bits_of_bodies(meets, "meets", 2**32 - 1, len(flags))))
         apart = body_pairs_of(never_meet, "never_meet", len(flags))
         address = None if stream is None else stream_address(stream)
-        options = _core.ColliderOptions(mesh_of_body, flags, algorithm, preset, device, texts, filters, apart, address)
+        count = numbering.count
+        options = _core.ColliderOptions(mesh_of_body * count, flags * count, algorithm, preset, device, texts, filters * count,
+                                        numbering.in_all_worlds(apart), count, address)
         self._core = _core.Collider(all_meshes, options, stream)
         self._arguments = {"algorithm": algorithm, "device": device, "bodies": mesh_of_body, "deformable": self._deformable, "groups": lists_of(groups),
-                           "meets": lists_of(meets), "never_meet": apart, "duplicates": duplicates, "weld": weld, "preset": preset, **texts}
+                           "meets": lists_of(meets), "never_meet": apart, "duplicates": duplicates, "weld": weld, "worlds": numbering.worlds, "preset": preset, **texts}
 
     def run(self, poses: Any = None, vertices: Any = None, *, next_poses: Any = None, next_vertices: Any = None,
             body_pairs: Iterable[Sequence[int]] | None = None) -> Answer:
@@ -195,10 +204,7 @@ class Collider:
         answer, bit for bit. With arrays on the GPU, body pairs are found on the device, whatever setting broad is. Raises ValueError or
         TypeError for wrong shapes, types and numbers that are not finite, tandem.DeviceError otherwise."""
         pairs = self._pairs_to_walk(body_pairs)
-        answer = self._core.run(poses, vertices, next_poses, next_vertices, pairs)
-        if answer is None:
-            answer = self._core.run(poses, self._by_body(vertices, "vertices"), next_poses, self._by_body(next_vertices, "next_vertices"), pairs)
-        return Answer(answer)
+        return Answer(self._run(self._core.run, poses, vertices, next_poses, next_vertices, pairs), self._numbering)
 
     def update(self, poses: Mapping[int, Any] | None = None, vertices: Mapping[int, Any] | None = None, *, next_poses: Mapping[int, Any] | None = None,
                next_vertices: Mapping[int, Any] | None = None, body_pairs: Iterable[Sequence[int]] | None = None) -> Answer:
@@ -216,16 +222,16 @@ class Collider:
         following = None
         if next_poses is not None or next_vertices is not None:
             following = changes_of(next_poses, next_vertices, "next_", self._numbering)
-        return Answer(self._core.update(frame, following, self._pairs_to_walk(body_pairs)))
+        return Answer(self._core.update(frame, following, self._pairs_to_walk(body_pairs)), self._numbering)
 
     def tune(self, poses: Any = None, vertices: Any = None, seconds: float = 2.0, *, next_poses: Any = None, next_vertices: Any = None) -> list[Trial]:
         """With algorithm="auto": times the candidates on a frame for about `seconds` of frames, and selects the fastest for later runs. Compilation
         may take six times as long. The arrays are those of run(). Afterwards `algorithm` and `settings` are those selected. Returns
         the timed candidates, the fastest first. If tune() is not called, the first run() selects. Raises ValueError if the collider has another
         algorithm, or all candidates fail."""
-        trials = self._core.tune(poses, vertices, seconds, next_poses, next_vertices)
-        if trials is None:
-            trials = self._core.tune(poses, self._by_body(vertices, "vertices"), seconds, next_poses, self._by_body(next_vertices, "next_vertices"))
+        def tune(poses, vertices, next_poses, next_vertices):
+            return self._core.tune(poses, vertices, seconds, next_poses, next_vertices)
+        trials = self._run(tune, poses, vertices, next_poses, next_vertices)
         return [Trial(*trial) for trial in trials]
 
     def pairs(self, poses: Any = None, vertices: Any = None, on_device: bool = False, *, next_poses: Any = None, next_vertices: Any = None) -> Any:
@@ -277,13 +283,24 @@ class Collider:
         raise TypeError("a collider owns memory of devices and cannot be pickled or copied; pickle its meshes and `arguments`")
 
     def __repr__(self) -> str:
-        return f"<tandem.Collider: {self._bodies} bodies, {self.algorithm} on {'+'.join(self.devices)}>"
+        worlds = "" if self._numbering.worlds is None else f"{self._numbering.worlds} worlds of "
+        return f"<tandem.Collider: {worlds}{self._bodies} bodies, {self.algorithm} on {'+'.join(self.devices)}>"
 
     def _pairs_to_walk(self, body_pairs):
         """Ascending pairs of numbers a <= b; None: none are given."""
         if body_pairs is None:
             return None
-        return sorted({(min(pair), max(pair)) for pair in body_pairs_of(body_pairs, "body_pairs", self._bodies)})
+        return sorted({(min(pair), max(pair)) for pair in self._numbering.pairs_of(body_pairs, "body_pairs")})
+
+    def _run(self, call, poses, vertices, next_poses, next_vertices, *more):
+        """`call` with the arrays of run(). The core takes the common containers itself and returns None for others."""
+        numbering = self._numbering
+        if numbering.worlds is None:
+            result = call(poses, vertices, next_poses, next_vertices, *more)
+            if result is not None:
+                return result
+        return call(numbering.poses_of(poses, "poses"), numbering.vertices_of(self._by_body(vertices, "vertices"), "vertices"),
+                    numbering.poses_of(next_poses, "next_poses"), numbering.vertices_of(self._by_body(next_vertices, "next_vertices"), "next_vertices"), *more)
 
     def _by_body(self, vertices, what):
         """{number: array} from any mapping or sequence of arrays; None: none. `what`: the name of the argument."""
