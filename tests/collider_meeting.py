@@ -82,9 +82,37 @@ class Meeting(ColliderCase):
             self.collider(output="count").run(POSES).meeting()
         with self.assertRaisesRegex(ValueError, "placement=exact"):
             self.collider(placement="exact").run(POSES).meeting()
-        core = self.collider()._core
-        answer = tandem.Answer(core.run_device_input(numpy.array(POSES), []))
-        with self.assertRaisesRegex(ValueError, "was in memory of the device"):
+
+    def test_frames_in_memory_of_the_device(self):
+        """Read back from what the kernels had, so that arrays can be overwritten after run(). The code path of GPU arrays, on host arrays."""
+        random = numpy.random.default_rng(11)
+        for device in DEVICES:
+            for settings in ({}, {"precision": "double"}, {"algorithm": "leaf_query", "builder": "sah"}, {"motion": "linear", "contact_rule": "none"}, {"origin": "auto"}):
+                with self.subTest(device=device, **settings):
+                    mine, other = (self.collider(device=device, deformable=[1], **settings) for _ in range(2))
+                    for dtype in (float, numpy.float32):
+                        poses = numpy.array([[*random.uniform(-0.1, 0.1, 3), 1, *random.uniform(-0.2, 0.2, 3)], POSES[1]], dtype)
+                        vertices = (self.meshes[1][0] + random.uniform(-0.1, 0.1, 3)).astype(dtype)
+                        following = ((poses, [None, vertices]), {"next_poses": poses}) if "motion" in settings else ((), {})
+                        right = other.run(poses, [vertices], **following[1], **({"next_vertices": [vertices]} if following[1] else {})).meeting()
+                        answer = tandem.Answer(mine._core.run_device_input(poses, [None, vertices], *following[0]))
+                        poses[:] = numpy.nan
+                        vertices[:] = numpy.nan
+                        self.assertEqual(answer.meeting().tolist(), right.tolist())
+                        self.assertLess(len(right), answer.count)
+                        self.assertGreater(len(right), 5)
+                    later = mine._core.run_device_input(*(numpy.array(POSES), [None, self.meshes[1][0]]), *((numpy.array(POSES), [None, self.meshes[1][0]]) if following[0] else ()))
+                    self.assertGreater(len(later.meeting()), 10)
+                    with self.assertRaisesRegex(ValueError, r"overwritten by a later run; call meeting\(\) before the next run"):
+                        answer.meeting()
+        collider = self.collider(origin="auto")
+        answer = tandem.Answer(collider._core.run_device_input(numpy.array(POSES), []))
+        collider.reset()
+        with self.assertRaises(ValueError):
+            collider.run(numpy.array(POSES) + 1e38)
+        far = numpy.array(POSES) + [2.0**20, 0, 0, 0, 0, 0, 0]
+        collider.run(far)
+        with self.assertRaisesRegex(ValueError, "overwritten by a later run"):
             answer.meeting()
 
     def test_body_pairs_of_the_caller(self):

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "python/core/answer.h"
 
+#include "algorithms/bodies/origin.h"
 #include "algorithms/parameters/table.h"
 #include "python/core/arrays.h"
 #include "python/core/meeting.h"
@@ -64,16 +65,23 @@ std::vector<ContactPoint> Answer::contacts() const {
 }
 
 std::vector<Pair> Answer::meeting() const {
-    if (!frame_)
-        throw InputError("meeting() needs the frame, which was in memory of the device; give its arrays in "
-                         "host memory");
-    const auto found = pairs();
-    const auto geometry = [&] {
+    std::vector<Pair> found;
+    oracle::World world;
+    {
         const auto lock = collider_->lock();
-        return geometry_of(collider_->settings());
-    }();
-    const auto& [x, y, z] = result_.origin;
-    return meeting_of(collider_->scene(), *frame_, geometry, {x, y, z}, found);
+        check_pairs_kept();
+        const auto geometry = geometry_of(collider_->settings());
+        if (geometry.placement == Placement::exact)
+            throw InputError("setting placement=exact has no rounded vertices, which meeting() decides; make "
+                             "the collider without it");
+        found = result_.download();
+        if (found.empty()) return found;
+        const auto& [x, y, z] = result_.origin;
+        world = frame_ ? oracle::world_of(collider_->scene(), counted_from({x, y, z}, *frame_),
+                                          geometry.precision)
+                       : collider_->world_of(number_);
+    }
+    return meeting_of(world, found);
 }
 
 const Answer::OnDevice& Answer::on_device() const {

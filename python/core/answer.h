@@ -13,7 +13,8 @@ public:
         : collider_(std::move(collider)),
           result_(std::move(run.result)),
           seconds_(run.seconds),
-          frame_(std::move(run.frame)) {}
+          frame_(std::move(run.frame)),
+          number_(run.number) {}
     Answer(const Answer&) = delete;
     Answer& operator=(const Answer&) = delete;
     ~Answer();
@@ -25,8 +26,9 @@ public:
     /// Sorted. Throw InputError if the settings keep no pairs or make no contacts.
     std::vector<Pair> pairs() const;
     std::vector<ContactPoint> contacts() const;
-    /// Those of pairs() whose tetrahedra meet in the frame (meeting_of). Throws InputError also if the frame
-    /// was in memory of a device, which later work may have overwritten.
+    /// Those of pairs() whose tetrahedra meet in the frame (meeting_of). A frame in memory of a device is
+    /// read back from what the last run left there. Throws InputError also if another run has followed that
+    /// one, and with placement=exact, whose vertices have no such numbers.
     std::vector<Pair> meeting() const;
 
     /// Pairs as rows of four words in memory of the device that found them.
@@ -47,6 +49,7 @@ private:
     FrameResult result_;
     double seconds_;
     std::shared_ptr<const Frame> frame_; ///< null if it was in memory of the device
+    std::uint64_t number_;               ///< Run::number
     mutable std::optional<OnDevice> on_device_;
 };
 

@@ -4,8 +4,10 @@
 #include "algorithms/bodies/origin.h"
 #include "algorithms/bodies/range.h"
 #include "algorithms/parameters/table.h"
+#include "algorithms/resident_session.h"
 #include "backends/cuda/cuda_device.h"
 #include "base/error.h"
+#include "python/core/device_world.h"
 
 #include <algorithm>
 #include <charconv>
@@ -148,6 +150,7 @@ void Collider::begin_at(const Input& input) {
     first_ = input.on_device ? downloaded(*devices_.front(), scene_, device_frames(input).frame)
                              : host_frames(input).frame;
     if (!session_ || session_->origin() == origin_of(scene_, origin_)) return;
+    ++frames_; // older answers must not read the new session's memory
     try {
         session_ = tandem::algorithm(algorithm_)
                        .prepare(devices_, scene_, prepared_ ? *prepared_ : session_->settings());
@@ -176,7 +179,8 @@ std::optional<std::vector<BodyPair>> Collider::world_pairs(const DeviceFrameInpu
 
 template<class Frames>
 FrameResult Collider::run_frame(Session& session, const Frames& frames,
-                                const std::optional<std::vector<BodyPair>>& given) const {
+                                const std::optional<std::vector<BodyPair>>& given) {
+    ++frames_;
     if (given) return run_among(session, frames, *given);
     const auto found = world_pairs(frames);
     return run_among(session, frames, found ? BodyPairs(*found) : std::nullopt);
@@ -189,7 +193,17 @@ Run Collider::run_frames(const Frames& frames, const std::optional<std::vector<B
     auto result = run_frame(*session_, frames, body_pairs);
     return {std::move(result),
             std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(),
-            {}};
+            {},
+            frames_};
+}
+
+oracle::World Collider::world_of(std::uint64_t number) const {
+    // Frames in memory of a device are run by this kind of session alone.
+    const auto* const session = dynamic_cast<const ResidentSession*>(session_.get());
+    if (number != frames_ || session == nullptr)
+        throw InputError("meeting() needs the frame, which was in memory of the device and is overwritten by "
+                         "a later run; call meeting() before the next run, or give arrays in host memory");
+    return world_on_device(session->bodies());
 }
 
 Run Collider::run(const Input& input) {

@@ -3,6 +3,7 @@
 
 #include "algorithms/traversal.h"
 #include "harness/plans/device_groups.h"
+#include "harness/verify/oracle/world.h"
 #include "python/core/choosing.h"
 #include "python/core/device_input.h"
 #include "python/core/host_input.h"
@@ -33,6 +34,7 @@ struct Run {
     FrameResult result;
     double seconds = 0;                 ///< of the frame itself, measured as the program does
     std::shared_ptr<const Frame> frame; ///< null if it was in memory of the device
+    std::uint64_t number = 0;           ///< counts frames of the collider
 };
 
 /// A scene of meshes on its own devices, prepared for one algorithm. One thread at a time uses it.
@@ -66,6 +68,9 @@ public:
     const DeviceGroup& devices() const { return devices_; }
     /// Addresses from which kernels read the last frame that was in memory of the device.
     std::vector<std::uintptr_t> addresses();
+    /// Corners of the frame of run `number` in memory of the device, as kernels had them, by a download.
+    /// Needs the lock. Throws InputError if a later run has overwritten them.
+    oracle::World world_of(std::uint64_t number) const;
     /// Keeps the Python object that owns the stream alive as long as the devices.
     void set_stream_owner(nanobind::object owner) { stream_owner_ = std::move(owner); }
     /// Guards every use of the devices, also by answers. Release the interpreter's lock before the call.
@@ -95,7 +100,7 @@ private:
     std::optional<std::vector<BodyPair>> world_pairs(const DeviceFrameInput& frames) const;
     template<class Frames>
     FrameResult run_frame(Session& session, const Frames& frames,
-                          const std::optional<std::vector<BodyPair>>& given) const;
+                          const std::optional<std::vector<BodyPair>>& given);
     template<class Frames>
     Run run_frames(const Frames& frames, const std::optional<std::vector<BodyPair>>& body_pairs);
     template<class Frames>
@@ -113,6 +118,7 @@ private:
     Origin origin_ = Origin::world;
     std::optional<HostInput> host_input_, next_host_input_; ///< of frames, and of their successors
     std::optional<DeviceInput> device_input_;
+    std::uint64_t frames_ = 0;         ///< number of frames that sessions began to run
     bool is_last_on_device_ = false;   ///< whether the last frame was in memory of the device
     std::unique_ptr<Session> session_; ///< null until an algorithm is chosen
     std::optional<Settings> prepared_; ///< of the session; none of a chosen one

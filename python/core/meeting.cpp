@@ -1,24 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "python/core/meeting.h"
 
-#include "algorithms/bodies/origin.h"
-#include "base/error.h"
 #include "base/parallel.h"
 #include "geometry/meet_exactly.h"
-#include "harness/verify/oracle/world.h"
 
 #include <algorithm>
 #include <iterator>
 
 namespace tandem::python {
 
-std::vector<Pair> meeting_of(const Scene& scene, const Frame& frame, const Geometry& geometry,
-                             const Eigen::Vector3d& origin, std::span<const Pair> pairs) {
-    if (geometry.placement == Placement::exact)
-        throw InputError("setting placement=exact has no rounded vertices, which meeting() decides; make the "
-                         "collider without it");
-    if (pairs.empty()) return {};
-    const auto world = oracle::world_of(scene, counted_from(origin, frame), geometry.precision);
+std::vector<Pair> meeting_of(const oracle::World& world, std::span<const Pair> pairs) {
     const auto parts = in_parts(pairs);
     std::vector<std::vector<Pair>> found(parts.size());
     parallel_for(parts.size(), [&](std::size_t part) {

@@ -102,7 +102,10 @@ class Answer:
         """Those of pairs() whose tetrahedra meet: rows of the same columns, sorted. Candidate pairs have overlapping bounds, these have a common point of the closed
         tetrahedra. The decision is exact for the vertices that the device has: moved and rounded in the collider's precision. It takes no contact rule
         and no boundary faces, so that pairs inside of bodies are found too. It runs on the host, on all cores. Raises ValueError with
-        output="count" or "digest", with placement="exact", and if the frame was in memory of a device."""
+        output="count" or "digest", and with placement="exact".
+
+        For arrays that were in memory of the device, what the kernels had is read back: all vertices, 16 bytes each or 32 in double, by this call
+        alone. It is there until the collider's next run; afterwards the answer raises ValueError. The arrays themselves can be overwritten."""
         return self._numbering.rows_of(self._core.meeting())
 
     def contacts(self) -> Contacts:
