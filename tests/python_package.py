@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """python_package.py PROGRAM SOURCE: the Python package, from its wheel alone: it reads the values of tandem export
---csv from the committed records, and its comparisons equal tandem compare. Figures name the best cells, the
-notebook runs, and bad files give one line."""
+--csv from the committed records, and its comparisons equal tandem compare. Figures name the best cells,
+and bad files give one line."""
 import csv
 import dataclasses
 import io
@@ -376,23 +376,6 @@ class Drawing(unittest.TestCase):
             tandem.plot_cells(self.all)
         with self.assertRaisesRegex(ValueError, "no such column"):
             tandem.plot_frames(self.plates, "pairs")
-
-
-class Notebook(unittest.TestCase):
-    def test_runs(self):
-        notebook = json.loads((SOURCE / "python/example.ipynb").read_text())
-        cells = ["".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "code"]
-        self.assertGreater(len(cells), 5)
-        names = {}
-        before = os.getcwd()
-        os.chdir(SOURCE / "python")
-        try:
-            for number, cell in enumerate(cells):
-                exec(compile(cell, f"cell {number}", "exec"), names)  # pylint: disable=exec-used
-        finally:
-            os.chdir(before)
-            matplotlib.pyplot.close("all")
-        self.assertEqual(names["tandem"].__version__, tandem.__version__)
 
 
 if __name__ == "__main__":
