@@ -22,7 +22,7 @@ def cells(notebook):
 
 
 def outputs(cell):
-    """Of each output its kind, its representations and its text."""
+    """The kind, the representations and the text of each output."""
     return [(one["output_type"], sorted(one.get("data", {})), "".join(one.get("text", one.get("data", {}).get("text/plain", "")))) for one in cell["outputs"]]
 
 
