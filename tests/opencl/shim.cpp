@@ -41,7 +41,7 @@ struct State {
     unsigned long calls = 0;
     std::size_t reported_group_size = 0; ///< reported maximum work-group size of every kernel, if not 0
     unsigned long failing_builds = number("SHIM_BUILDS"); ///< number of builds that still fail
-    bool has_started = false;            ///< a command has been enqueued
+    bool has_started = false;                             ///< a command has been enqueued
     std::map<cl_command_queue, Queue> queues;
     Queue released; ///< in flight on released queues
 };
