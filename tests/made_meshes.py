@@ -15,7 +15,7 @@ from meshio.gmsh import _gmsh40
 
 from program import LONG, SOURCE, Case, bar, tandem
 
-HERE, THERE = "read", "by tandem convert"  # how tandem takes a format
+READ, CONVERTED = "read", "by tandem convert"  # how tandem takes a format
 EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))  # of meshio's tetra10, whose nodes 4 to 9 are their middles
 MOST = 20000  # tetrahedra of a real mesh
 
@@ -33,21 +33,21 @@ def as_gmsh40(binary, version):
 
 
 FORMATS = [  # suffix, how, writer
-    *((".vtk", HERE, written(kind, binary=binary)) for kind in ("vtk42", "vtk51") for binary in (False, True)),
-    *((".vtu", HERE, written("vtu", **options)) for options in
+    *((".vtk", READ, written(kind, binary=binary)) for kind in ("vtk42", "vtk51") for binary in (False, True)),
+    *((".vtu", READ, written("vtu", **options)) for options in
       ({"binary": False}, {"compression": None}, {"compression": "zlib"}, {"compression": "lzma"}, {"header_type": "UInt64"})),
-    *((".msh", HERE, written(kind, binary=binary)) for kind in ("gmsh", "gmsh22") for binary in (False, True)),
-    *((".msh", HERE, as_gmsh40(binary, version)) for binary in (False, True) for version in (b"4.0", b"4")),
-    (".mesh", HERE, written("medit")), (".node", HERE, written("tetgen")), (".ele", HERE, written("tetgen")),
-    (".inp", THERE, written("abaqus")), (".msh", THERE, written("ansys", binary=False)), (".msh", THERE, written("ansys", binary=True)),
-    (".avs", THERE, written("avsucd")), (".cgns", THERE, written("cgns")), (".xml", THERE, written("dolfin-xml")), (".e", THERE, written("exodus")),
-    *((".f3grid", THERE, written("flac3d", binary=binary)) for binary in (False, True)), (".h5m", THERE, written("h5m")), (".hmf", THERE, written("hmf")),
-    *((".mdpa", THERE, written("mdpa", binary=binary)) for binary in (False, True)), (".med", THERE, written("med")),
-    *((".bdf", THERE, written("nastran", point_format=points, cell_format=cells))
+    *((".msh", READ, written(kind, binary=binary)) for kind in ("gmsh", "gmsh22") for binary in (False, True)),
+    *((".msh", READ, as_gmsh40(binary, version)) for binary in (False, True) for version in (b"4.0", b"4")),
+    (".mesh", READ, written("medit")), (".node", READ, written("tetgen")), (".ele", READ, written("tetgen")),
+    (".inp", CONVERTED, written("abaqus")), (".msh", CONVERTED, written("ansys", binary=False)), (".msh", CONVERTED, written("ansys", binary=True)),
+    (".avs", CONVERTED, written("avsucd")), (".cgns", CONVERTED, written("cgns")), (".xml", CONVERTED, written("dolfin-xml")), (".e", CONVERTED, written("exodus")),
+    *((".f3grid", CONVERTED, written("flac3d", binary=binary)) for binary in (False, True)), (".h5m", CONVERTED, written("h5m")), (".hmf", CONVERTED, written("hmf")),
+    *((".mdpa", CONVERTED, written("mdpa", binary=binary)) for binary in (False, True)), (".med", CONVERTED, written("med")),
+    *((".bdf", CONVERTED, written("nastran", point_format=points, cell_format=cells))
       for points, cells in (("fixed-large", "fixed-small"), ("fixed-small", "fixed-small"), ("free", "free"), ("fixed-large", "fixed-large"))),
-    (".vol", THERE, written("netgen")), (".post", THERE, written("permas")), (".su2", THERE, written("su2")), (".dat", THERE, written("tecplot")),
-    (".ugrid", THERE, written("ugrid")), (".lb8.ugrid", THERE, written("ugrid")), (".b8.ugrid", THERE, written("ugrid")),
-    *((".xdmf", THERE, written("xdmf", data_format=form)) for form in ("XML", "Binary", "HDF")),
+    (".vol", CONVERTED, written("netgen")), (".post", CONVERTED, written("permas")), (".su2", CONVERTED, written("su2")), (".dat", CONVERTED, written("tecplot")),
+    (".ugrid", CONVERTED, written("ugrid")), (".lb8.ugrid", CONVERTED, written("ugrid")), (".b8.ugrid", CONVERTED, written("ugrid")),
+    *((".xdmf", CONVERTED, written("xdmf", data_format=form)) for form in ("XML", "Binary", "HDF")),
 ]
 
 
@@ -123,8 +123,8 @@ def drawn(count):
     every = [(form, content) for content in CONTENTS for form in FORMATS if content is not with_ghosts or form[0] == ".vtu"]
     # meshio writes no elements of second order to TetGen's files, and reads such a file without an end.
     every = [(form, content) for form, content in every if content is not second_order or form[0] not in (".node", ".ele")]
-    every += 3 * [(form, plain) for form in FORMATS if form[1] is HERE]
-    made = [(*one, (meshes if one[1] is plain and one[0][1] is HERE else small)) for one in every]
+    every += 3 * [(form, plain) for form in FORMATS if form[1] is READ]
+    made = [(*one, (meshes if one[1] is plain and one[0][1] is READ else small)) for one in every]
     made = [(form, content, pool[i * 5 % len(pool)]) for i, (form, content, pool) in enumerate(made)]
     return made if count is None else [made[i * len(made) // count] for i in range(count)]
 
@@ -184,7 +184,7 @@ class MadeMeshes(Case):
                 counts = self.write(form, content, mesh, path)
                 if counts is None:
                     left += 1
-                elif form[1] is HERE:
+                elif form[1] is READ:
                     self.expect_read(path, content, counts)
                     read += 1
                 else:
