@@ -70,9 +70,7 @@ std::optional<Parts> unpacked(std::string_view text) {
 
 ImageCache::ImageCache(std::filesystem::path folder) : folder_(std::move(folder)) {
     if (folder_.empty()) return;
-    if (const auto code = make_own(folder_))
-        throw DeviceError(
-            fmt::format("TANDEM_KERNEL_CACHE: cannot make {}: {}", folder_.string(), code.message()));
+    if (make_own(folder_)) folder_.clear();
     if (const auto why = why_not_own(folder_); !why.empty())
         throw DeviceError(fmt::format("TANDEM_KERNEL_CACHE: {}", why));
 }

@@ -20,8 +20,8 @@ struct Image {
 /// damaged or of another format are ignored.
 class ImageCache {
 public:
-    /// Creates the folder; an empty path stores nothing. Throws DeviceError when it cannot create it, or when
-    /// other users may have written to it.
+    /// Creates the folder; an empty path stores nothing, and neither does one that cannot be created. Throws
+    /// DeviceError when other users may have written to it.
     explicit ImageCache(std::filesystem::path folder);
 
     /// `key` contains everything that the image depends on. An image of another key is never returned.

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "backends/opencl/drivers.h"
 
-#include "backends/opencl/cl.h"
+#include "backends/opencl/description.h"
 #include "backends/opencl/registration.h"
+#include "base/private_folder.h"
 #include "base/text_lines.h"
 
-#include <cerrno>
 #include <cstdlib>
-#include <cstring>
 #include <dlfcn.h>
 #include <filesystem>
 #include <fmt/format.h>
-#include <unistd.h>
 
 namespace tandem::opencl {
 
@@ -46,22 +44,7 @@ fs::path pocl_cache() {
     return "/tmp/pocl/kcache";
 }
 
-/// Why no file can be made in a folder, as the system words it; empty when one can. Makes a missing folder,
-/// as the library whose cache it is does, and removes its own trial file.
-std::string why_not_writable(const fs::path& folder) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error) return error.message();
-    // Permissions alone do not tell: a file system can be read-only or full.
-    auto name = (folder / ".tandem-XXXXXX").string();
-    const int file = mkstemp(name.data());
-    if (file < 0) return std::strerror(errno);
-    close(file);
-    unlink(name.c_str());
-    return {};
-}
-
-/// Why the kernel cache of a platform fails; empty when it works or is unknown.
+/// Why the kernel cache of a platform cannot be written; empty when it can, or is unknown.
 std::string cache_problem(const std::string& platform) {
     if (platform != "Portable Computing Language") return {};
     const auto folder = pocl_cache();
@@ -138,6 +121,10 @@ void examine(DriverReport& driver) {
 }
 
 } // namespace
+
+std::string cache_problem(cl_device_id device) {
+    return cache_problem(platform_of(device_value<cl_platform_id>(device, CL_DEVICE_PLATFORM)).name);
+}
 
 std::vector<DriverReport> registered_drivers() {
     auto drivers = read_registration();

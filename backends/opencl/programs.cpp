@@ -2,6 +2,7 @@
 #include "backends/opencl/programs.h"
 
 #include "backends/opencl/description.h"
+#include "backends/opencl/drivers.h"
 #include "backends/ptxas_log.h"
 #include "base/text_lines.h"
 
@@ -78,8 +79,9 @@ cl_program Programs::build(Queue& queue, const KernelSource& source, const std::
     }
     const auto log = build_log(program, device_);
     clReleaseProgram(program);
-    throw DeviceError(fmt::format("{}: {} does not compile with {} (code {}): {}", info_.id, source.name,
-                                  options, code, decisive_line(log)));
+    const auto cache = cache_problem(device_);
+    throw DeviceError(fmt::format("{}: {} does not compile with {} (code {}): {}{}{}", info_.id, source.name,
+                                  options, code, decisive_line(log), cache.empty() ? "" : "; ", cache));
 }
 
 std::shared_ptr<OpenclKernel> Programs::compile(Queue& queue, const KernelSource& source,

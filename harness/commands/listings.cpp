@@ -2,6 +2,7 @@
 #include "harness/profile/ceilings.h"
 #include "harness/commands/commands.h"
 #include "harness/sampling/conditions.h"
+#include "harness/plans/cache_folder.h"
 #include "harness/plans/inputs.h"
 #include "harness/record/journal.h"
 #include "base/standard_streams.h"
@@ -191,6 +192,8 @@ void print_dynamics() {
 /// printed before the error.
 int devices_command(const DevicesOptions& options) {
     if (options.measure) return measure_devices(options);
+    if (const auto cache = find_cache_folder(); !cache.problem.empty() && !cache.is_refused)
+        print_message("tandem: {}\n", cache.problem);
     const auto backends = discover();
     const bool json = options.json;
     Json all = Json::array();

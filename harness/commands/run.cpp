@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/commands/commands.h"
 
+#include "harness/plans/cache_folder.h"
 #include "harness/plans/choosing/choose.h"
 #include "harness/commands/dumps.h"
 #include "harness/record/environment.h"
@@ -312,6 +313,7 @@ int Run::go() {
     // Open all groups first, so that a mistake in the last scene is found before the first is measured.
     if (all_.groups.size() > 1)
         for (const auto& group : all_.groups) open(group, leave_out);
+    report_cache_folder();
     const Interrupt interrupt(is_first(team_) ? Interrupt::stopping : std::string_view());
     int code = 0;
     for (const auto& group : all_.groups) later_cells_ += group.cells.size();

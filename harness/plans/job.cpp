@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
+#include "harness/plans/cache_folder.h"
 #include "harness/plans/job.h"
 
 #include "algorithms/bounds/geometry.h"
-#include "harness/plans/choosing/choice_cache.h"
 #include "harness/plans/inputs.h"
 #include "harness/sampling/isolation/isolated_sampler.h"
 #include "harness/plans/key.h"
@@ -152,7 +152,7 @@ bool measure_cells(const Job& job, std::span<const Cell> cells, References& refe
 }
 
 std::filesystem::path checks_folder(const RunOptions& options) {
-    return options.check_afresh ? std::filesystem::path() : ChoiceCache::default_folder();
+    return options.check_afresh ? std::filesystem::path() : cache_folder();
 }
 
 std::string scene_text(const Scene& scene, const FrameRange& range) {

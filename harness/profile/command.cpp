@@ -2,6 +2,7 @@
 // `tandem profile`.
 #include "harness/profile/ceilings.h"
 #include "harness/commands/commands.h"
+#include "harness/plans/cache_folder.h"
 #include "harness/plans/cell_filter.h"
 #include "harness/plans/inputs.h"
 #include "harness/sampling/interrupt.h"
@@ -165,6 +166,7 @@ int Profiling::go() {
     trace_.emplace(run_.trace);
     print_scene(job_->scene, job_->range);
     refuse_unpreparable();
+    report_cache_folder();
     find_ceilings();
     const Interrupt interrupt(Interrupt::stopping);
     References references(job_->scene, job_->range, checks_folder(run_));

@@ -166,8 +166,11 @@ class Faults(unittest.TestCase):
             self.assertEqual(tandem(*RUN, "--device", "cuda:0", TANDEM_KERNEL_CACHE=cache)[0], 1)
 
     def test_a_cache_folder_that_cannot_be_created(self):
-        text = reason(TANDEM_KERNEL_CACHE="/dev/null/images")
-        self.assertIn("TANDEM_KERNEL_CACHE: cannot make /dev/null/images: Not a directory", text)
+        """Images are not stored: one line, and every run compiles."""
+        for _ in range(2):
+            status, _, errors = tandem(*RUN, "--device", "cuda:0", TANDEM_KERNEL_CACHE="/dev/null/images")
+            self.assertEqual((status, len(errors)), (1, 1), errors)
+            self.assertIn("tandem: TANDEM_KERNEL_CACHE: /dev/null/images cannot be written (Not a directory)", errors[0])
 
     def test_wrong_answers_are_detected(self):
         """The stub's kernels do nothing: every pair is missing."""

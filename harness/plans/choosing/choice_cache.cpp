@@ -6,11 +6,9 @@
 #include "harness/record/environment.h"
 #include "harness/sampling/ranks/rank_team.h"
 #include "base/digest.h"
-#include "base/error.h"
 
 #include <algorithm>
 #include <bit>
-#include <cstdlib>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <fstream>
@@ -38,12 +36,6 @@ Json device_json(const Device& device) {
             {"compiler", info.compiler},
             {"compute_units", info.compute_units},
             {"memory_limit", limit == Device::no_memory_limit ? Json() : Json(limit)}};
-}
-
-/// An absolute path of an environment variable; empty without one.
-fs::path path_in(const char* variable) {
-    const auto* text = std::getenv(variable);
-    return text == nullptr || *text != '/' ? fs::path() : fs::path(text);
 }
 
 /// Replaces a file atomically: readers get the whole old or the whole new text.
@@ -80,21 +72,6 @@ Json question_of(const Cell& cell, const Scene& scene, std::uint64_t pairs) {
             {"candidate_pairs", power_of_4(pairs)},
             {"deformable", deformable},
             {"candidates", hex(digest_of(all))}};
-}
-
-fs::path ChoiceCache::default_folder() {
-    if (const auto* given = std::getenv("TANDEM_KERNEL_CACHE"); given != nullptr && *given != 0) {
-        if (const auto why = why_not_own(given); !why.empty())
-            throw InputError(fmt::format("TANDEM_KERNEL_CACHE: {}", why));
-        return given;
-    }
-    // The user did not name these folders: if one is not this user's own, nothing is stored.
-    fs::path folder;
-    if (const auto cache = path_in("XDG_CACHE_HOME"); !cache.empty())
-        folder = cache / "tandem";
-    else if (const auto home = path_in("HOME"); !home.empty())
-        folder = home / ".cache" / "tandem";
-    return folder.empty() || !why_not_own(folder).empty() ? fs::path() : folder;
 }
 
 fs::path ChoiceCache::file_of(const Json& question) const {

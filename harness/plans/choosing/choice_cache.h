@@ -16,10 +16,6 @@ nlohmann::ordered_json question_of(const Cell& cell, const Scene& scene, std::ui
 /// Stores choices in JSON files, one for each question, across processes. Processes may share a folder.
 class ChoiceCache {
 public:
-    /// $TANDEM_KERNEL_CACHE, else $XDG_CACHE_HOME/tandem, else ~/.cache/tandem. Empty when none of these is
-    /// set, or when other users can write to the folder; throws InputError when they can write to the first.
-    static std::filesystem::path default_folder();
-
     /// `program` identifies this build: choices of other builds are ignored. With an empty folder nothing is
     /// stored.
     ChoiceCache(std::filesystem::path folder, std::string program)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "harness/plans/cache_folder.h"
 #include "harness/plans/choosing/choice_cache.h"
 #include "harness/plans/frames.h"
 
@@ -15,7 +16,7 @@ struct ChoosingOptions {
     double seconds = 10; ///< limit of the replays; preparation may take six times as long
     bool afresh = false; ///< ignore a stored choice
     std::function<bool()> stop = [] { return false; }; ///< before a frame: whether to end with Interrupted
-    std::filesystem::path folder = ChoiceCache::default_folder();
+    std::filesystem::path folder = cache_folder();
     std::function<void(std::string_view)> progress = [](std::string_view) {}; ///< called with "" at the end
 };
 

@@ -4,6 +4,7 @@
 #include "harness/verify/accuracy/figures.h"
 #include "harness/verify/adversarial.h"
 #include "harness/sampling/interrupt.h"
+#include "harness/plans/cache_folder.h"
 #include "harness/plans/cell_filter.h"
 #include "harness/plans/inputs.h"
 #include "harness/plans/job.h"
@@ -191,6 +192,7 @@ int accuracy_command(const AccuracyOptions& options) {
     const auto records =
         figures && options.run.out.empty() ? options.figures + "/accuracy.jsonl" : options.run.out;
     RecordFile file(records);
+    report_cache_folder();
     std::optional<Interrupt> interrupt(std::in_place, Interrupt::stopping);
     int code = 0;
     for (const auto& given : scenes)
