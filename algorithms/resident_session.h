@@ -37,7 +37,6 @@ public:
     void set_received(std::span<const std::uint32_t> bodies);
     /// Uploads the vertices of the remaining deformable bodies for the next run(), and waits.
     void upload_vertices(const Frame& frame);
-    const Bodies& bodies() const { return *pipeline_.bodies; }
 
     /// From the next frame on, reads the bodies of this subdomain only and finds its pairs. Body pairs passed
     /// to run() must have bodies of the subdomain.
@@ -61,6 +60,7 @@ private:
     void do_count_work(bool on) override { pipeline_.count(on); }
     std::span<Device* const> do_devices() const override { return devices_; }
     const Settings& do_settings() const override { return pipeline_.settings; }
+    const Bodies* do_bodies() const override { return pipeline_.bodies.get(); }
 
     void refresh(const Input& input);
     void find_body_pairs(const Input& input);

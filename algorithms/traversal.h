@@ -15,6 +15,7 @@
 
 namespace tandem {
 
+class Bodies;        // bodies/bodies.h
 class Ranks;         // backends/ranks.h
 struct BuildContext; // stages.h
 struct KernelCost;   // cost.h
@@ -97,6 +98,9 @@ public:
     const Settings& settings() const { return do_settings(); }
     /// Origin of the coordinates on the devices, by setting origin.
     const Eigen::Vector3d& origin() const { return origin_; }
+    /// What the kernels of the last run read, in memory of the only device, relative to origin(). Null for
+    /// sessions that do not run frames in the device's memory.
+    const Bodies* bodies() const { return do_bodies(); }
 
 private:
     friend class Traversal; // sets scene_ and origin_
@@ -122,6 +126,7 @@ private:
     virtual std::span<Device* const> do_devices() const = 0;
     virtual const Settings& do_settings() const = 0;
     virtual std::optional<std::span<const std::uint32_t>> do_owned() const { return std::nullopt; }
+    virtual const Bodies* do_bodies() const { return nullptr; }
 
     Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
     const Scene* scene_ = nullptr; ///< the argument of prepare()

@@ -184,8 +184,7 @@ void RankSession::exchange_vertices(const FrameInput& input, GhostExchange::Traf
         }
     }
     const bool is_usable = session_ && own.failure.empty();
-    device_exchange_.exchange(ghosts_, is_usable ? &session_->bodies() : nullptr, local_scene_.get(),
-                              traffic);
+    device_exchange_.exchange(ghosts_, is_usable ? session_->bodies() : nullptr, local_scene_.get(), traffic);
 }
 
 /// Collective: exchanges ghosts. A rank takes part in all exchanges also after an error, which would block
@@ -220,7 +219,7 @@ FrameResult RankSession::run_local(Report& own) {
     } catch (const OutOfMemory&) {
         own.needs_batches = true;
     }
-    device_exchange_.download_received(ghosts_, session_->bodies(), *local_scene_, local_frame_);
+    device_exchange_.download_received(ghosts_, *session_->bodies(), *local_scene_, local_frame_);
     session_->set_received({});
     return session_->run_unchecked(local_input());
 }

@@ -4,7 +4,6 @@
 #include "algorithms/bodies/origin.h"
 #include "algorithms/bodies/range.h"
 #include "algorithms/parameters/table.h"
-#include "algorithms/resident_session.h"
 #include "backends/cuda/cuda_device.h"
 #include "base/error.h"
 #include "python/core/device_world.h"
@@ -198,12 +197,11 @@ Run Collider::run_frames(const Frames& frames, const std::optional<std::vector<B
 }
 
 oracle::World Collider::world_of(std::uint64_t number) const {
-    // Frames in memory of a device are run by this kind of session alone.
-    const auto* const session = dynamic_cast<const ResidentSession*>(session_.get());
-    if (number != frames_ || session == nullptr)
+    const auto* const bodies = session_->bodies();
+    if (number != frames_ || bodies == nullptr)
         throw InputError("meeting() needs the frame, which was in memory of the device and is overwritten by "
                          "a later run; call meeting() before the next run, or give arrays in host memory");
-    return world_on_device(session->bodies());
+    return world_on_device(*bodies);
 }
 
 Run Collider::run(const Input& input) {
