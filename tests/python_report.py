@@ -242,6 +242,16 @@ class Commands(Case):
         self.assertTrue(out.splitlines()[-1].startswith(f"{page}: "))
         self.assertIn("of the difference from", out)
 
+    def test_numpy_is_enough_for_a_report(self):
+        """scripts/setup installs no other package of Python for scripts/run."""
+        text = ("import importlib.util, sys\nfind = importlib.util.find_spec\nwithout = ('pandas', 'scipy', 'matplotlib')\n"
+                "sys.modules.update(dict.fromkeys(without))\nimportlib.util.find_spec = lambda name: None if name in without else find(name)\n"
+                f"sys.path.insert(0, {str(SOURCE / 'python')!r})\nfrom tandem.commands import report\nsys.exit(report.main(sys.argv[2:], sys.argv[1]))")
+        page = self.work / "numpy.html"
+        done = subprocess.run(["/usr/bin/python3", "-c", text, PROGRAM, H200 / "plates.jsonl", "--output", page, "--sentences"], capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("numpy.html: ", done.stdout)
+
     def test_options_reach_the_export(self):
         page = self.work / "meshes.html"
         status, out, errors = tandem("view", "--mesh", self.good, "--mesh", self.good, "--pose", "-1 0 0 1 0 0 0", "--contacts", "-o", page)

@@ -62,7 +62,7 @@ def _write(options, program):
         raise BadUse(f"--against {options.against}: two sets of records are compared; give one FILE beside it")
     check_output(options.output, [*options.files, *filter(None, (options.against, options.scene))], ".partial")
     page = open_page("Report of tandem", True, bool(options.scene), program, "tandem report")
-    check_packages("tandem report", ("numpy", "scipy"))
+    check_packages("tandem report", ("numpy",))
     from ..report.data import data_of, size_of
     from ..report.differences import differences
     from ..report.reading import read_records
