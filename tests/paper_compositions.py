@@ -11,8 +11,10 @@ from program import SOURCE
 
 sys.path.insert(0, str(SOURCE / "python"))
 import paper_records as made
-from tandem.paper import comparison_tables, simulation_tables
+from tandem.paper import claims, comparison_tables, simulation_tables
 from tandem.paper.folder import Folder
+from tandem.paper.measures import Declared
+from tandem.paper.rules import AGREES, DIFFERS, UNTESTED
 
 SCALE = 10**9
 
@@ -68,6 +70,24 @@ class Compositions(unittest.TestCase):
         self.assertIn("measured whole: tower 0.900.", comparison_tables.table4(self.folder(files)).notes[-1])
         del files["array-k40c"]
         self.assertNotIn("measured whole", comparison_tables.table4(self.folder(files)).notes[-1])
+
+    def test_whole_steps_have_the_solver_on_both_sides(self):
+        """An upload of 100 ms for each of 500 frames, frames of 1 ms and a solver of 1 ms: (1 + 100 + 1) / (1 + 1). Steps without the frames, or with other
+        contacts, judge nothing."""
+        fields = {one["id"]: one for one in claims.declared()}["total"]
+        def line(solve_ns=10**6 - 3, contacts=1, steps=made.FULL_STEPS):
+            cell = lambda side, k="8": made.record("funnel", Declared(fields).wanted(fields[side], k), 3)
+            other, own, array = cell("above"), cell("below"), cell("array")
+            for one in (other, own):
+                made.set_quantity(one, "frame", [10**6 * made.FULL_STEPS] * 3)
+            made.set_quantity(array, "stages:write", [10**8 * made.FULL_STEPS] * 3)
+            run = [made.step(i, contacts_found=contacts, host={"solve": solve_ns, "assemble": 1, "move": 1, "reduce": 1}) for i in range(steps)]
+            files = {"cells-funnel": [other, own], "array": [array], "sim-funnel": made.simulation("funnel", run)}
+            return claims.line_of(Declared(fields), self.folder(files), "funnel", "8")
+        self.assertAlmostEqual(line().measured.value, 51)
+        self.assertEqual([line().verdict, line(solve_ns=10**9).verdict], [AGREES, DIFFERS])
+        for found, reason in ((line(contacts=2), "contacts differ"), (line(steps=60), "not all of the measured frames")):
+            self.assertEqual((found.verdict, reason in found.reason), (UNTESTED, True), found.reason)
 
     def test_a_table_names_deep_overlaps_and_steps_without_convergence(self):
         steps = [made.step(i, deepest_m=0.1 * i, iterations=150 if i % 2 else 7) for i in range(10)]

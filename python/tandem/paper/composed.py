@@ -51,14 +51,34 @@ def _with_interval(values, left_out, locations, frames):
     return Measured(statistics.median(values), low, high, len(values), left_out, basis, frames, locations)
 
 
-def ratio_with_array(other, other_name, own, own_name, arrays):
-    """A time of `other`, with an upload of the whole array for each of its batches, over a time of `own` in their common frames."""
+class Rest:
+    """The other parts of the steps of a simulation whose frames were measured apart. Raises NotMeasured if a cell of them has other contacts."""
+
+    def __init__(self, run, cell, parts):
+        self.location = run.location
+        steps = {step["step"]: step for step in run.steps}
+        check_contacts(cell, steps)
+        self._seconds = {number: sum(step["host_ns"][part] for part in parts) / 1e9 for number, step in steps.items()}
+
+    def seconds(self, frames):
+        """The sum over (first, last) of frames."""
+        numbers = [number for first, last in frames for number in range(first, last + 1)]
+        if not set(numbers) <= set(self._seconds):
+            raise NotMeasured("the simulation has not all of the measured frames")
+        return sum(self._seconds[number] for number in numbers)
+
+
+def ratio_with_array(other, other_name, own, own_name, arrays, rest=None):
+    """A time of `other`, with an upload of the whole array for each of its batches, over a time of `own` in their common frames. Both with the
+    `rest` of their steps, if there is one."""
     pairs = common_frames(other, own)
     above, below = [(a, frames) for a, _, frames in pairs], [(b, frames) for _, b, frames in pairs]
     uploads, left_out = uploads_of(arrays)
     base, divisor, batches = _middle_sum(above, other_name), _middle_sum(below, own_name), _batches(above)
-    values = [(base + batches * upload) / divisor for upload in uploads]
-    return _with_interval(values, left_out, (own.locations[0], other.locations[0], *(cell.locations[0] for cell in arrays)), frames_text(pairs))
+    more = rest.seconds([frames for *_, frames in pairs]) if rest else 0
+    values = [(base + batches * upload + more) / (divisor + more) for upload in uploads]
+    locations = (own.locations[0], other.locations[0], *(cell.locations[0] for cell in arrays), *([rest.location] if rest else []))
+    return _with_interval(values, left_out, locations, frames_text(pairs))
 
 
 def share_with_array(other, above_name, below_name, arrays):

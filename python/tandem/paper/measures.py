@@ -100,6 +100,14 @@ def composed_ratio(claim, folder, scene, k):
     return composed.ratio_with_array(other, above["quantity"], own, below["quantity"], _arrays(claim, folder))
 
 
+def composed_total(claim, folder, scene, k):
+    """Whole steps: the same with the other parts of the simulation that found these contacts."""
+    above, below = claim.fields["above"], claim.fields["below"]
+    other, own = claim.cells(folder, (above, below), scene, k)
+    rest = composed.Rest(claim.simulation(folder, scene), own, below["parts"])
+    return composed.ratio_with_array(other, above["quantity"], own, below["quantity"], _arrays(claim, folder), rest)
+
+
 def composed_share(claim, folder, scene, k):
     above, below = claim.fields["above"], claim.fields["below"]
     [other] = claim.cells(folder, (above,), scene, k)
@@ -192,4 +200,4 @@ def median_of_steps(claim, folder, scene, k):
     return exact(float(numpy.median(_curve(run, claim.fields["quantity"]))), (run.location,), f"{len(run.steps)} steps")
 
 
-MEASURES = {made.__name__: made for made in (ratio, count, composed_ratio, composed_share, composed_step, digests, chunks, correlation, deciles, median_of_steps, mean_of_steps)}
+MEASURES = {made.__name__: made for made in (ratio, count, composed_ratio, composed_total, composed_share, composed_step, digests, chunks, correlation, deciles, median_of_steps, mean_of_steps)}
