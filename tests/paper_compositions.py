@@ -89,6 +89,24 @@ class Compositions(unittest.TestCase):
         for found, reason in ((line(contacts=2), "contacts differ"), (line(steps=60), "not all of the measured frames")):
             self.assertEqual((found.verdict, reason in found.reason), (UNTESTED, True), found.reason)
 
+    def test_back_ends_are_compared_on_one_device(self):
+        """gProximity takes 3 times as long with OpenCL and twice as long with CUDA: 1.5."""
+        fields = {one["id"]: one for one in claims.declared()}["opencl-and-cuda"]
+        def line(opencl=3, cuda=2, device="GPU", backends=("opencl", "cuda")):
+            records = []
+            for backend in backends:
+                for side, scale in (("above", {"opencl": opencl, "cuda": cuda}[backend]), ("below", 1)):
+                    one = made.record("plates", Declared(fields).wanted(fields[side], "8"), 3)
+                    one["key"] += backend
+                    one["devices"] = [{"id": f"{backend}:0", "name": device if backend == "opencl" else "GPU"}]
+                    made.set_quantity(one, "frame", [scale * SCALE] * 3)
+                    records.append(one)
+            return claims.line_of(Declared(fields), self.folder({"backends": records}), "plates", "8")
+        self.assertEqual((line().verdict, round(line().measured.value, 9)), (DIFFERS, 1.5))
+        self.assertEqual(line(opencl=2).verdict, AGREES)
+        for found, reason in ((line(device="processor"), "different devices"), (line(backends=("cuda",)), "one back end")):
+            self.assertEqual((found.verdict, reason in found.reason), (UNTESTED, True), found.reason)
+
     def test_a_table_names_deep_overlaps_and_steps_without_convergence(self):
         steps = [made.step(i, deepest_m=0.1 * i, iterations=150 if i % 2 else 7) for i in range(10)]
         run = made.simulation("funnel", steps)

@@ -75,6 +75,22 @@ def ratio(claim, folder, scene, k):
     return ratio_of(first, above["quantity"], second, below["quantity"])
 
 
+def backends(claim, folder, scene, k):
+    """A ratio of two methods with OpenCL over the same ratio with CUDA, on one device. The ends of the interval are those of the two ratios, which holds
+    however they depend on each other."""
+    sides = (claim.fields["above"], claim.fields["below"])
+    names_of_device, ratios = set(), []
+    for backend in ("opencl", "cuda"):
+        cells = claim.cells(folder, [{**side, "backend": backend} for side in sides], scene, k)
+        names_of_device |= {cell.device["name"] for cell in cells}
+        ratios.append(ratio_of(cells[0], sides[0]["quantity"], cells[1], sides[1]["quantity"]))
+    if len(names_of_device) > 1:
+        raise NotMeasured("the back ends were measured on different devices")
+    opencl, cuda = ratios
+    return Measured(opencl.value / cuda.value, opencl.low / cuda.high, opencl.high / cuda.low, min(opencl.samples, cuda.samples), opencl.disturbed + cuda.disturbed,
+                    opencl.basis, opencl.frames, (*opencl.records, *cuda.records))
+
+
 def count(claim, folder, scene, k):
     side = claim.fields["above"]
     [cell] = claim.cells(folder, (side,), scene, k)
@@ -200,4 +216,4 @@ def median_of_steps(claim, folder, scene, k):
     return exact(float(numpy.median(_curve(run, claim.fields["quantity"]))), (run.location,), f"{len(run.steps)} steps")
 
 
-MEASURES = {made.__name__: made for made in (ratio, count, composed_ratio, composed_total, composed_share, composed_step, digests, chunks, correlation, deciles, median_of_steps, mean_of_steps)}
+MEASURES = {made.__name__: made for made in (ratio, backends, count, composed_ratio, composed_total, composed_share, composed_step, digests, chunks, correlation, deciles, median_of_steps, mean_of_steps)}
