@@ -2,7 +2,7 @@
 """Tables 4 and 5: the methods beside each other, resident and as published."""
 from . import composed
 from .folder import SCENES, STEPS_OF_TABLES, number, paper_table
-from .methods import FOUR, found, four, name_of, names
+from .methods import FOUR, found, four_of_scenes, name_of, names
 from .quantities import NotMeasured
 from .ratios import ratio_of
 from .tables import Table, ordered, paper_rows, written
@@ -29,9 +29,8 @@ def factors(scene, other, own, data_path):
                   "queue_bytes": other.settings.get("queue_bytes") if data_path == "published" else None, "records": " ".join((own.locations[0], other.locations[0]))}
 
 
-def _resident_rows(folder, scene):
+def _resident_rows(scene, cases):
     """gProximity over each of the three other methods, and a row for each that has not been measured."""
-    cases = four(folder, scene, SMALL_K)
     other = cases["gProximity"]
     rows = []
     for name in [name for name in FOUR if name != "gProximity"]:
@@ -89,10 +88,10 @@ def table4(folder):
     rows = paper_rows(paper_table(4), {"total": "total", "narrow": "narrow", "read": "read", "write": "write", "launches": "launches"})
     for row in rows:
         row |= {"data_path": "published", "method": "gProximity / chunked", "launches_as_theirs": row["launches"], "launches": None}
-    for scene in names()["groups"]["seven"]:
-        rows += _resident_rows(folder, scene)
-        if scene in SCENES:
-            rows += _published_rows(folder, scene)
+    for scene, _, cases in four_of_scenes(folder, (SMALL_K,)):
+        rows += _resident_rows(scene, cases)
+    for scene in SCENES:
+        rows += _published_rows(folder, scene)
     return Table(4, "gProximity over the other methods, k = 8", ordered(rows),
                  ("Resident: everything stays on the device; four methods. Published: both algorithms convert, upload and read back everything in every frame. Above 1, "
                   "gProximity takes longer. frame has whole frames with their 95 % interval; narrow is what the paper calls narrow phase. Both methods of a row have the "

@@ -3,7 +3,7 @@
 import statistics
 
 from .claims import counts
-from .methods import FOUR, four, names
+from .methods import FOUR, four_of_scenes
 from .quantities import NotMeasured
 from .ratios import ratio_of
 from .rules import AGREES, DIFFERS, NOT_SETTLED, UNTESTED
@@ -17,16 +17,14 @@ def interval_text(measured):
 
 
 def four_methods(folder):
-    """One row for each scene and k with at least two of the four methods: milliseconds a frame of each case, and gProximity's time over that of the
+    """One row for each scene, its frames and k with at least two of the four methods: milliseconds a frame of each case, and gProximity's time over that of the
     others as a Measured."""
     rows = []
-    for scene in names()["groups"]["seven"]:
-        for k in ("8", "18"):
-            cases = four(folder, scene, k)
-            other = cases["gProximity"]
-            if sum(case is not None for case in cases.values()) > 1:
-                ratios = {name: _over(other, case) for name, case in cases.items() if name != "gProximity"}
-                rows.append({"scene": scene, "k": k, "cases": cases, "ratios": ratios})
+    for scene, k, cases in four_of_scenes(folder, ("8", "18")):
+        other = cases["gProximity"]
+        if sum(case is not None for case in cases.values()) > 1:
+            ratios = {name: _over(other, case) for name, case in cases.items() if name != "gProximity"}
+            rows.append({"scene": scene, "k": k, "cases": cases, "ratios": ratios})
     return rows
 
 

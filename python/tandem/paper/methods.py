@@ -40,8 +40,16 @@ def found(folder, step, scene, wanted):
     return None
 
 
-def four(folder, scene, k):
-    """{name: case or None} of the four methods on a scene, from the step that has the most of them."""
+def four(folder, scene, k, steps):
+    """{name: case or None} of the four methods on a scene, from the one of these steps that has the most of them."""
     cells = names()["cells"]
-    choices = [{name: found(folder, step, scene, {"k": k, **cells[name]}) for name in FOUR} for step in ("schedules", f"resident-{scene}", f"cells-{scene}")]
+    choices = [{name: found(folder, step, scene, {"k": k, **cells[name]}) for name in FOUR} for step in steps]
     return max(choices, key=lambda choice: sum(case is not None for case in choice.values()))
+
+
+def four_of_scenes(folder, values_of_k):
+    """(scene, k, cases of four()) of every scene: of the frames of the paper's tables, and of later ones where bodies are in contact."""
+    for scene in names()["groups"]["seven"]:
+        for steps in (("schedules", f"resident-{scene}", f"cells-{scene}"), (f"jammed-{scene}",)):
+            for k in values_of_k:
+                yield scene, k, four(folder, scene, k, steps)
