@@ -43,6 +43,11 @@ constexpr bool has_verdicts(DecisionPrecision decision) {
     return decision != DecisionPrecision::fp32 && decision != DecisionPrecision::none;
 }
 
+/// The define DECIDED of trial.clh. `by_verdicts`: the kernel reads verdicts.
+constexpr const char* decided_define(DecisionPrecision decision, bool by_verdicts) {
+    return decision == DecisionPrecision::none ? "2" : by_verdicts ? "1" : "0";
+}
+
 /// The tetrahedra that sessions with these settings walk. With output=contacts, a rule whose contacts need
 /// boundary faces of both tetrahedra leaves out the others. residency=published walks everything.
 Walked walked_of(const Settings& settings);

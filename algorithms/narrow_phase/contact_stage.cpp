@@ -35,9 +35,7 @@ ContactStage::ContactStage(const Bodies& bodies, const ContactSettings& settings
     define(defines, parameters::contact_rule, settings.rule);
     defines["BOUNDARY_NEEDED"] = std::to_string(boundaries_needed(settings.rule));
     if (has_verdicts(settings.decision)) decision_ = std::make_unique<DecisionStage>(bodies, settings, shape);
-    const auto decided = [&](bool by_verdicts) {
-        return settings.decision == DecisionPrecision::none ? "2" : by_verdicts ? "1" : "0";
-    };
+    const auto decided = [&](bool by_verdicts) { return decided_define(settings.decision, by_verdicts); };
     const auto& last = kernel_source("algorithms/narrow_phase/contacts.cl");
     if (launches == Launches::apart) {
         defines["DECIDED"] = decided(decision_ && !decides_open());

@@ -33,8 +33,7 @@ std::vector<std::array<Real, 3>> world_vertices(const Scene& scene, const Frame&
             continue;
         }
         std::array<Real, 3> moved{};
-        for (int i = 0; i < 3; ++i)
-            moved[i] = ((rows[i][0] * local[0] + rows[i][1] * local[1]) + rows[i][2] * local[2]) + rows[i][3];
+        for (int i = 0; i < 3; ++i) moved[i] = moved_coordinate(rows[i], local);
         world.push_back(moved);
     }
     return world;

@@ -2,6 +2,7 @@
 #include "python/core/device_world.h"
 
 #include "base/parallel.h"
+#include "harness/verify/world_vertices.h"
 
 namespace tandem::python {
 
@@ -18,18 +19,12 @@ std::vector<Row<Real>> downloaded_rows(Device& device, const Buffer& buffer, std
     return rows;
 }
 
-/// The order of operations is that of body.clh, so that all bits are equal.
-template<class Real>
-Real moved(const Row<Real>& row, const Row<Real>& point) {
-    return ((row[0] * point[0] + row[1] * point[1]) + row[2] * point[2]) + row[3];
-}
-
 /// `pose`: the three rows of the body's pose; null: its vertices are in world coordinates.
 template<class Real>
 std::array<double, 3> placed(const Row<Real>* pose, const Row<Real>& point) {
     std::array<double, 3> at{};
     for (std::size_t axis = 0; axis < 3; ++axis)
-        at[axis] = static_cast<double>(pose != nullptr ? moved(pose[axis], point) : point[axis]);
+        at[axis] = static_cast<double>(pose != nullptr ? moved_coordinate(pose[axis], point) : point[axis]);
     return at;
 }
 

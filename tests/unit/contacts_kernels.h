@@ -95,7 +95,7 @@ public:
             decide(defines, settings.decision, first, pair_capacity, status, false);
         defines["CONTACT_RULE"] = std::to_string(static_cast<int>(settings.rule));
         if (!at_once) find_meeting(defines, settings.decision, first, pair_capacity, status);
-        defines["DECIDED"] = decided(settings.decision, has_verdicts(settings.decision));
+        defines["DECIDED"] = decided_define(settings.decision, has_verdicts(settings.decision));
         defines["AT_ONCE"] = at_once ? "1" : "0";
         const std::array<Argument, 14> generate{found_,      first,     pair_capacity, bodies_,   poses_,
                                                 tetrahedra_, vertices_, boundary_,     verdicts_, meeting_,
@@ -120,10 +120,6 @@ private:
         device_.launch(kernel, {16, group_size_}, arguments);
     }
 
-    static const char* decided(DecisionPrecision decision, bool by_verdicts) {
-        return decision == DecisionPrecision::none ? "2" : by_verdicts ? "1" : "0";
-    }
-
     void find_meeting(Defines defines, DecisionPrecision decision, std::uint32_t first,
                       std::uint32_t pair_capacity, const Buffer& status) {
         const std::array<Argument, 12> certify{found_,    first,       pair_capacity, bodies_,
@@ -131,12 +127,12 @@ private:
                                                verdicts_, open_,       meeting_,      status};
         const bool decides_open =
             decision == DecisionPrecision::recheck || decision == DecisionPrecision::exact;
-        defines["DECIDED"] = decided(decision, decision == DecisionPrecision::fp64);
+        defines["DECIDED"] = decided_define(decision, decision == DecisionPrecision::fp64);
         launch("certify.cl", "certify_pairs", defines, certify);
         if (decides_open) decide(defines, decision, first, pair_capacity, status, true);
         const std::array<Argument, 10> separate{found_,    first,     bodies_, poses_,   tetrahedra_,
                                                 vertices_, verdicts_, open_,   meeting_, status};
-        defines["DECIDED"] = decided(decision, has_verdicts(decision));
+        defines["DECIDED"] = decided_define(decision, has_verdicts(decision));
         launch("separate.cl", "separate_pairs", defines, separate);
     }
 
