@@ -60,7 +60,8 @@ class Caches(Case):
         environment = {"TANDEM_KERNEL_CACHE": "/dev/null/below"}
         two = ("--mesh", self.good, "--mesh", self.good)
         for words in ((*self.run_words, "--isolate"), (*self.run_words, "--set", "k=8,18"), ("profile", *two, "--device", "host", "--quiet"),
-                      ("accuracy", *two, "--device", "host", "--algorithm", "tiled", "--set", "k=8", "--quiet"), ("devices",)):
+                      ("accuracy", *two, "--device", "host", "--algorithm", "tiled", "--set", "k=8", "--quiet"), ("devices",),
+                      ("check", *two, "--device", "host", "--algorithm", "tiled", "--set", "k=8", "--quiet")):
             with self.subTest(words[0]):
                 errors = self.right(*words, environment=environment)
                 self.assertEqual([line for line in errors if "/dev/null/below" in line and "cannot be written" in line], errors[:1], errors)

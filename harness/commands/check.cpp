@@ -3,6 +3,7 @@
 // exact truth that it misses.
 #include "harness/commands/commands.h"
 #include "harness/sampling/interrupt.h"
+#include "harness/plans/cache_folder.h"
 #include "harness/plans/cell_filter.h"
 #include "harness/plans/inputs.h"
 #include "harness/plans/job.h"
@@ -178,6 +179,7 @@ int check_command(const RunOptions& options) {
     const auto backends = open_backends(request.devices, options.require);
     check_required(backends, options.require);
     const auto devices = open_devices(options, backends, request.devices);
+    report_cache_folder();
     const auto scenes = expand_hard(options.scene);
     const Interrupt interrupt(Interrupt::stopping);
     if (scenes.size() > 1)
