@@ -5,7 +5,7 @@ import math
 import statistics
 
 from .. import resampling
-from .quantities import NotMeasured, batches_of, disturbed_rounds, frame_range, seconds_by_round
+from .quantities import NotMeasured, batches_of, disturbed_rounds, frame_range, seconds_by_round, weights_of
 from .ratios import common_frames, frames_text
 from .rules import Measured
 from .simulation import check_contacts, frames_of
@@ -92,7 +92,7 @@ def share_with_array(other, above_name, below_name, arrays):
 
 def step_share(cell, above_name, run, parts_above, parts_below):
     """The share of a part of a simulated step whose contacts are found as the cell does. The other parts are those of the simulation `run`, which
-    found the same contacts. parts_above, parts_below: parts of a step on the host, beside the cell's time and its whole frame."""
+    found the same contacts. Each frame stands for the steps nearest to it. parts_above, parts_below: parts of a step on the host, beside the cell's time and its whole frame."""
     above, whole = frames_of(cell, above_name), frames_of(cell, "frame")
     steps = {step["step"]: step for step in run.steps}
     common = sorted(set(whole) & set(steps))
@@ -100,7 +100,8 @@ def step_share(cell, above_name, run, parts_above, parts_below):
         raise NotMeasured("the simulation has none of the measured frames")
     check_contacts(cell, steps)
     parts = lambda frame, names: sum(steps[frame]["host_ns"][name] for name in names) / 1e9
-    found = resampling.ratio_of_sums([whole[f] + parts(f, parts_below) for f in common], [above[f] + parts(f, parts_above) for f in common])
+    sides = [[weight * (seconds[f] + parts(f, names)) for f, weight in zip(common, weights_of(common))] for seconds, names in ((whole, parts_below), (above, parts_above))]
+    found = resampling.ratio_of_sums(*sides)
     disturbed = sum(len(disturbed_rounds(record)) for record in cell.records)
     return Measured(*found, 0 if disturbed else len(common), disturbed, "frames and steps, one sample each (composed)",
                     f"{len(common)} steps of {common[0]}:{common[-1]}", (cell.locations[0], run.location))

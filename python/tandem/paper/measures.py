@@ -63,7 +63,7 @@ class Declared:
         run = next(filter(None, (folder.simulation(name.replace("{scene}", scene)) for name in names)), None)
         if run is None:
             raise NotMeasured("no such simulation has completed")
-        first, last = self.fields.get("covers", (0, 0))
+        first, last = self.fields.get("covers", (math.inf, -math.inf))
         if self.fields["measure"] != "composed_step" and (run.steps[0]["step"] > first or run.steps[-1]["step"] < last):
             raise NotMeasured(f"simulated in {len(run.steps)} steps; the paper's are {last + 1}")
         return run
@@ -79,14 +79,11 @@ def backends(claim, folder, scene, k):
     """A ratio of two methods with OpenCL over the same ratio with CUDA, on one device. The ends of the interval are those of the two ratios, which holds
     however they depend on each other."""
     sides = (claim.fields["above"], claim.fields["below"])
-    names_of_device, ratios = set(), []
-    for backend in ("opencl", "cuda"):
-        cells = claim.cells(folder, [{**side, "backend": backend} for side in sides], scene, k)
-        names_of_device |= {cell.device["name"] for cell in cells}
-        ratios.append(ratio_of(cells[0], sides[0]["quantity"], cells[1], sides[1]["quantity"]))
-    if len(names_of_device) > 1:
-        raise NotMeasured("the back ends were measured on different devices")
-    opencl, cuda = ratios
+    def ratio_with(backend, **more):
+        other, own = claim.cells(folder, [{**side, "backend": backend, **more} for side in sides], scene, k)
+        return ratio_of(other, sides[0]["quantity"], own, sides[1]["quantity"]), own.device["name"]
+    cuda, name = ratio_with("cuda")
+    opencl, _ = ratio_with("opencl", device=name)
     return Measured(opencl.value / cuda.value, opencl.low / cuda.high, opencl.high / cuda.low, min(opencl.samples, cuda.samples), opencl.disturbed + cuda.disturbed,
                     opencl.basis, opencl.frames, (*opencl.records, *cuda.records))
 

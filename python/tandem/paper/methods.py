@@ -30,11 +30,11 @@ def _origin(case):
 
 
 def found(folder, step, scene, wanted):
-    """The first case of a step with that scene, algorithm, preset, back end and settings; None if there is none."""
+    """The first case of a step with that scene, algorithm, preset, back end, device and settings; None if there is none."""
     pattern = names()["scenes"][scene]
     for case in folder.cases(step):
         own = {**case.settings, **case.records[0].get("asked", {}), "algorithm": case.algorithm, "preset": case.preset,
-               "backend": case.device["id"].partition(":")[0]}
+               "backend": case.device["id"].partition(":")[0], "device": case.device["name"]}
         if fnmatch.fnmatch(_origin(case), pattern) and all(str(own.get(name)) == value for name, value in wanted.items()):
             return case
     return None

@@ -27,6 +27,13 @@ def frame_range(record):
     return record["frames"]["first"], record["frames"]["last"]
 
 
+def weights_of(frames):
+    """How many steps each of these ascending frames stands for, as a share of their mean: those nearest to it. All 1 for evenly spaced frames."""
+    gaps = [later - earlier for earlier, later in zip(frames, frames[1:])] or [1]
+    widths = [before + after for before, after in zip([gaps[0], *gaps], [*gaps, gaps[-1]])]
+    return [width * len(frames) / sum(widths[:len(frames)]) for width in widths[:len(frames)]]
+
+
 def disturbed_rounds(record):
     """Numbers of the rounds whose samples are doubtful."""
     return {one["round"] for one in ((record.get("conditions") or {}).get("disturbed") or [])}

@@ -5,7 +5,7 @@ import math
 import statistics
 
 from .. import resampling
-from .quantities import NotMeasured, count_of, disturbed_rounds, frame_range, is_time, rounds_of, seconds_by_round
+from .quantities import NotMeasured, count_of, disturbed_rounds, frame_range, is_time, rounds_of, seconds_by_round, weights_of
 from .rules import Measured, exact
 
 LEAST_FRAMES = 5  # frames that are measured once each and still give an interval
@@ -72,7 +72,18 @@ def _of_times(pairs, above, below, locations):
     if not side_by_side and min(len(top.common()), len(bottom.common())) > 1:
         found = resampling.unpaired_ratio(bottom.sums(bottom.common()), top.sums(top.common()))
         return make((found.value, found.low, found.high), min(len(top.common()), len(bottom.common())), "rounds")
-    return _of_frames(top.by_frame(), bottom.by_frame(), make)
+    weights = _weights(pairs)
+    weighted = lambda values: [None if value is None else value * weight for value, weight in zip(values, weights)]
+    return _of_frames(weighted(top.by_frame()), weighted(bottom.by_frame()), make)
+
+
+def _weights(pairs):
+    """Of single frames, how many steps each stands for; 1 for ranges of frames."""
+    if any(first != last for *_, (first, last) in pairs):
+        return [1] * len(pairs)
+    numbers = sorted({first for *_, (first, _) in pairs})
+    weight_of = dict(zip(numbers, weights_of(numbers)))
+    return [weight_of[first] for *_, (first, _) in pairs]
 
 
 def _of_frames(top, bottom, make):

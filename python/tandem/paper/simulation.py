@@ -4,7 +4,7 @@ import copy
 import math
 import statistics
 
-from .quantities import NotMeasured, frame_range, seconds_by_round
+from .quantities import NotMeasured, frame_range, seconds_by_round, weights_of
 
 SOLVER = ("reduce", "assemble", "solve", "move")  # parts of a step after its contacts are found
 
@@ -26,6 +26,11 @@ class Simulation:
         return self.run["scene"]["name"]
 
     @property
+    def label(self):
+        """The scene's name in its step, which tells several runs of one scene apart: jacks, jacks1000."""
+        return self.name.partition("-")[2]
+
+    @property
     def method(self):
         return f"{self.run['algorithm']} {self.run['preset']}, k = {self.run['settings']['k']}"
 
@@ -36,12 +41,12 @@ class Simulation:
         return shorter
 
     def host(self, name):
-        """Seconds of a part on the host; "step" is the total."""
-        return sum(step["host_ns"][name] for step in self.steps) / 1e9
+        """Seconds of a part on the host, the steps by their weights; "step" is the total."""
+        return sum(step.get("weight", 1) * step["host_ns"][name] for step in self.steps) / 1e9
 
     def stage(self, name, where=None):
         of = lambda stage: (stage["device_ns"] or stage["host_ns"]) / 1e9 if where is None else stage[where] / (1e9 if where.endswith("_ns") else 1)
-        return sum(of(step["stages"][name]) for step in self.steps if name in step["stages"])
+        return sum(step.get("weight", 1) * of(step["stages"][name]) for step in self.steps if name in step["stages"])
 
     def curve(self, what):
         """One number per step. what: a field of a step, or "host:NAME" or "stage:NAME" for seconds."""
@@ -96,13 +101,14 @@ def _with_frame(step, seconds, stages):
 
 def composed(run, cell):
     """The steps of `run` that are frames of `cell`: the cell finds the contacts, and the other parts are those of the run. Raises NotMeasured if the
-    cell has other contacts."""
+    cell has other contacts. The weight of a step says how many it stands for, over their mean."""
     steps = {step["step"]: step for step in run.steps}
     check_contacts(cell, steps)
     seconds, stages = frames_of(cell, "frame"), _stages(cell)
     made = copy.copy(run)
     made.is_composed, made.name, made.location = True, f"composed-{run.name.removeprefix('sim-')}", f"{run.location} {cell.locations[0]}"
-    made.steps = [_with_frame(steps[frame], seconds[frame], stages[frame]) for frame in sorted(set(seconds) & set(steps))]
+    frames = sorted(set(seconds) & set(steps))
+    made.steps = [{**_with_frame(steps[frame], seconds[frame], stages[frame]), "weight": weight} for frame, weight in zip(frames, weights_of(frames))]
     made.run = {**run.run, "algorithm": cell.algorithm, "preset": cell.preset, "settings": cell.settings, "devices": [cell.device]}
     return made
 

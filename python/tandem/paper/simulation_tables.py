@@ -9,14 +9,14 @@ from .tables import Table, ordered, paper_rows, ratio, written
 STEPS = 500  # of the paper's simulations
 KINDS = ("sim-", "host-", "serial-", "parallel-")
 COMMON = ("Rows of one scene are sums over the same steps from step 0, as many as its shortest run has (column steps). The paper's are of 500 steps. Rows with 'composed' "
-          "are frames of that recording, measured with the published path, beside the solver of the recording; their minutes are 500 times the mean step.")
+          "are frames of that recording, measured with the published path, beside the solver of the recording; each counts for the steps nearest to it, and their minutes are 500 times the mean step.")
 
 
 def common_runs(folder, kinds=KINDS):
-    """The simulations of these kinds, each cut to the steps that all runs of its scene have."""
+    """The simulations of these kinds, each cut to the steps that all runs with its label have."""
     runs = [run for kind in kinds for run in folder.simulations(kind)]
-    shortest = {scene: min(len(run.steps) for run in runs if run.scene == scene) for scene in {run.scene for run in runs}}
-    return [run.first(shortest[run.scene]) for run in runs]
+    shortest = {label: min(len(run.steps) for run in runs if run.label == label) for label in {run.label for run in runs}}
+    return [run.first(shortest[run.label]) for run in runs]
 
 
 def percentages(simulation):
@@ -41,7 +41,7 @@ def _minutes(run, seconds):
 
 def _row(run, **columns):
     steps = f"{len(run.steps)} of {run.steps[0]['step']}:{run.steps[-1]['step']}" if run.is_composed else len(run.steps)
-    return {"scene": run.scene, "source": "ours", "device": run.run["devices"][0]["id"], "method": run.method,
+    return {"scene": run.label, "source": "ours", "device": run.run["devices"][0]["id"], "method": run.method,
             "data_path": data_path(run) + (", composed" if run.is_composed else ""), **columns, "steps": steps, "records": run.location}
 
 
