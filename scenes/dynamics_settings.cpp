@@ -147,11 +147,12 @@ std::span<const DynamicsSetting> dynamics_settings() {
 std::span<const DynamicsPreset> dynamics_presets() {
     static const std::vector<DynamicsPreset> presets{
         {"paper",
-         "the paper's solver: at most 150 iterations, tolerances of 0.01, no warm start, no corrections",
+         "the paper's solver: at most 150 iterations, tolerances of 0.01, no warm start, no corrections, "
+         "only equal contacts merged",
          {"step=0.01", "method=gauss_seidel", "iterations=150", "absolute_tolerance=0.01",
           "relative_tolerance=0.01", "warm_start=0", "pre_stabilize=0", "post_stabilize=0", "bounce=1",
           "bound_energy=0", "surface_normals=0", "contact_layer=0", "linear_damping=0.01",
-          "angular_damping=0.01", "merge_distance=0", "per_pair=0"}}};
+          "angular_damping=0.01", "merge_distance=1e-6", "per_pair=0"}}};
     return presets;
 }
 
