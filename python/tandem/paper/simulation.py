@@ -71,12 +71,15 @@ def frames_of(cell, name):
 
 
 def check_contacts(cell, steps):
-    """Raises NotMeasured unless the steps found the contacts of the cell's frames, up to the rounding of other bounds."""
+    """Raises NotMeasured unless the steps found the contacts of the cell's frames, but for a hundredth of all: with other bounds, other pairs that
+    touch exactly are candidates."""
+    pairs = []
     for record in cell.records:
-        first, _ = frame_range(record)
-        for frame, contacts in enumerate((record["work"] or {}).get("contacts") or [], first):
-            if frame in steps and abs(contacts - steps[frame]["contacts_found"]) > 0.01 * contacts:
-                raise NotMeasured(f"the simulation is another one: its contacts differ in frame {frame}")
+        counts = (record["work"] or {}).get("contacts") or []
+        pairs += [(contacts, steps[frame]["contacts_found"]) for frame, contacts in enumerate(counts, frame_range(record)[0]) if frame in steps]
+    unlike = [abs(contacts - found) for contacts, found in pairs if contacts != found]
+    if sum(unlike) > 0.01 * sum(contacts for contacts, _ in pairs):
+        raise NotMeasured(f"the simulation is another one: its contacts differ in {len(unlike)} of {len(pairs)} frames")
 
 
 def _stages(cell):

@@ -76,10 +76,10 @@ def _solver_note(folder):
         ours = folder.simulation(f"sim-{run.name.removeprefix('solver-')}")
         count = min(len(run.steps), len(ours.steps)) if ours else 0
         if count:
-            pairs = [(one.host("solve"), statistics.fmean(step["contacts_kept"] for step in one.steps), max(step["deepest_m"] for step in one.steps))
+            pairs = [(*(statistics.fmean(step[name] for step in one.steps) for name in ("iterations", "contacts_kept")), max(step["deepest_m"] for step in one.steps))
                      for one in (run.first(count), ours.first(count))]
-            solve, kept, deepest = (f"{written(theirs)} instead of {written(own)}" for theirs, own in zip(*pairs))
-            texts.append(f"{run.scene}, {count} steps: {solve} s of solving, {kept} contacts kept on average, deepest overlap {deepest} m")
+            passes, kept, deepest = (f"{written(theirs)} instead of {written(own)}" for theirs, own in zip(*pairs))
+            texts.append(f"{run.scene}, {count} steps: {passes} passes and {kept} contacts kept on average, deepest overlap {deepest} m")
     return (f"With a relative tolerance of 0.01 and no start from the last step's forces (--dynamics paper): {'; '.join(texts)}.",) if texts else ()
 
 
