@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "harness/verify/world_vertices.h"
 
+#include "algorithms/bodies/moved_coordinate.h"
+
 #include <cmath>
 
 namespace tandem {

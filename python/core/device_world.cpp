@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "python/core/device_world.h"
 
+#include "algorithms/bodies/moved_coordinate.h"
 #include "base/parallel.h"
-#include "harness/verify/world_vertices.h"
 
 namespace tandem::python {
 
