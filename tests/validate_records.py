@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """validate_records.py [FILE.jsonl|FILE.jsonl.xz ...]: checks records against results/record.schema.json. Files with
-other names have other schemas of results/: ceilings*.jsonl (ceilings), simulation*.jsonl, sim-*, host-*, serial-*
-and parallel-*.jsonl (simulation), steps.jsonl (paper), tried*.jsonl (tried), profile*.jsonl and profile records
+other names have other schemas of results/: ceilings*.jsonl (ceilings), simulation*.jsonl, sim-*, host-*, serial-*,
+parallel-* and solver-*.jsonl (simulation), steps.jsonl (paper), tried*.jsonl (tried), profile*.jsonl and profile records
 in any file (profile), lines of kind verdict in any file (verdict). Without files it checks all committed ones. Exit code 1; FILE:LINE and position of the
 first errors are printed."""
 import functools
@@ -17,8 +17,8 @@ import jsonschema
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SHOWN = 10
 # Schema by the beginning of a file's name; files of 'tandem paper' are named after its steps.
-KINDS = {"ceilings": "ceilings", "simulation": "simulation", "profile": "profile", "steps": "paper", "tried": "tried", "sim-": "simulation", "host-": "simulation",
-         "serial-": "simulation", "parallel-": "simulation"}
+KINDS = {"ceilings": "ceilings", "simulation": "simulation", "profile": "profile", "steps.": "paper", "tried": "tried", "sim-": "simulation", "host-": "simulation",
+         "serial-": "simulation", "parallel-": "simulation", "solver-": "simulation"}
 
 
 def no_constant(name):
