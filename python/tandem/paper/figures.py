@@ -3,7 +3,7 @@
 import numpy
 
 from .drawing import COLOUR_OF, COLOURS, INK, PALE, STAGES, WINNER, Plot, legend_above, log_axis, milliseconds, missing
-from .folder import SCENES, STEPS_OF_TABLES, number, paper_table
+from .folder import SCENES, STEPS_OF_PAPER, STEPS_OF_TABLES, number, paper_table
 from .methods import found, name_of, names
 from .tables import written
 
@@ -120,10 +120,10 @@ def figure12(folder):
         return missing(folder.path, 12, "Launches", "nothing has completed")
     plot = Plot(12, 2, 3.1)
     curves, bars = plot.axes
-    for colour, run in zip(COLOURS, simulations):
+    for colour, run in zip(COLOURS, [run.first(STEPS_OF_PAPER) for run in simulations]):
         launches = [sum(stage["launches"] for stage in step["stages"].values()) for step in run.steps]
-        curves.plot([step["step"] for step in run.steps], launches, color=colour, label=f"{run.scene}, {run.run['algorithm']} {run.run['preset']}")
-        plot.rows += [{"scene": run.scene, "method": run.method, "step": step["step"], "launches": n} for step, n in zip(run.steps, launches)]
+        curves.plot([step["step"] for step in run.steps], launches, color=colour, label=f"{run.label}, {run.run['algorithm']} {run.run['preset']}")
+        plot.rows += [{"scene": run.label, "method": run.method, "step": step["step"], "launches": n} for step, n in zip(run.steps, launches)]
     curves.set(xlabel="step", ylabel="launches, all kernels")
     curves.set_ylim(bottom=0)
     legend_above(curves, 2)

@@ -10,6 +10,7 @@ from .simulation import Simulation, composed
 
 SCENES = ("funnel", "glasses", "colosseum", "plates", "tower")
 STEPS_OF_TABLES = 102  # frames 20 to 121 of the paper's Tables 4 and 5
+STEPS_OF_PAPER = 500  # of its simulations
 
 
 def paper_table(number):

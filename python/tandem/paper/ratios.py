@@ -78,7 +78,7 @@ def _of_times(pairs, above, below, locations):
 
 
 def _weights(pairs):
-    """Of single frames, how many steps each stands for; 1 for ranges of frames."""
+    """How many steps each frame stands for; 1 for ranges of frames."""
     if any(first != last for *_, (first, last) in pairs):
         return [1] * len(pairs)
     numbers = sorted({first for *_, (first, _) in pairs})

@@ -4,12 +4,11 @@ import numpy
 
 from .drawing import COLOUR_OF, COLOURS, INK, STAGES, Plot, legend_above, log_axis, milliseconds, missing, symlog_axis
 from .figures import GPU, MAX_COSTS
-from .folder import SCENES, number, paper_table
+from .folder import SCENES, STEPS_OF_PAPER, number, paper_table
 from .measures import MIN_RANGE
 from .simulation_tables import common_runs, data_path, percentages
 from .tables import written
 
-STEPS_OF_PAPER = 500
 PARTS = {"solver": "solve", "initialization": "refit", "broad": "broad", "narrow": "traverse", "contact_reduction": "reduce"}  # of Table 3, and their colours
 
 
@@ -88,7 +87,7 @@ def _bars_of_10(runs):
     rows = []
     for scene in SCENES:
         for run in [run for run in runs if run.scene == scene]:
-            path = data_path(run) + (", composed" if run.is_composed else "")
+            path = data_path(run).replace(", conversion", "") + (", composed" if run.is_composed else "")
             parts = {name.removesuffix("_percent"): value for name, value in percentages(run).items()}
             rows.append((f"{scene}, {run.run['devices'][0]['id']}, {path}, {len(run.steps)} steps", parts, 1e3 * run.host("step") / len(run.steps), run.location))
         for row in [row for row in paper_table(3) if row["gpu"] == GPU and row["scene"] == scene]:
@@ -110,13 +109,13 @@ def figure10(folder):
         ax.barh(range(len(rows)), values, left=left, color=COLOUR_OF[colour], height=0.7, label=part.replace("_", " "))
         left += values
     for row, (label, parts, step_ms, records) in enumerate(rows):
-        ax.annotate(f" {written(step_ms)} ms", (100, row), va="center", fontsize=8)
+        ax.annotate(f" {written(float(f'{step_ms:.3g}'))} ms", (100, row), va="center", fontsize=8)
         plot.rows += [{"run": label, "part": part, "percent": value, "ms_a_step": step_ms, "records": records} for part, value in parts.items()]
     ax.set_yticks(range(len(rows)), [label for label, *_ in rows], fontsize=8)
     ax.set(xlabel="percent; at the right, ms a step", xlim=(0, 125))
     ax.set_xticks(range(0, 101, 20))
     ax.invert_yaxis()
-    legend_above(ax, 3)
+    legend_above(ax, 2)
     solver = {who: [parts["solver"] for label, parts, *_ in rows if ("paper's" in label) == (who == "paper")] for who in ("ours", "paper")}
     text = {who: f"{min(values):.0f} to {max(values):.0f} %" for who, values in solver.items() if values}
     return plot.save(folder.path, f"Parts of a simulated step: the solver takes {text['ours']} of ours" + (f", and {text['paper']} of the paper's" if "paper" in text else ""))
@@ -142,7 +141,7 @@ def figure11(folder):
         ax.set_title(f"{run.scene}, {run.run['devices'][0]['name']}", fontsize=9, loc="right", color=INK)
         symlog_axis(ax, 0.1)
         milliseconds(ax)
-        legend_above(ax, 6)
+        legend_above(ax, 3)
         growth.append(f"{largest[0]} for {run.scene} on {run.run['devices'][0]['id']}")
     plot.axes[len(runs) - 1].set_xlabel("step")
     return plot.save(folder.path, f"Stages of our steps (dotted: means of the paper's {GPU} over 500 steps); the largest: {', '.join(growth)}")

@@ -2,11 +2,10 @@
 """Tables 3, 6 and 7: whole simulations. Runs of one scene are compared over the steps that all of them have."""
 import statistics
 
-from .folder import paper_table
+from .folder import STEPS_OF_PAPER, paper_table
 from .simulation import composed_share_of
 from .tables import Table, ordered, paper_rows, ratio, written
 
-STEPS = 500  # of the paper's simulations
 KINDS = ("sim-", "host-", "serial-", "parallel-")
 COMMON = ("Rows of one scene are sums over the same steps from step 0, as many as its shortest run has (column steps). The paper's are of 500 steps. Rows with 'composed' "
           "are frames of that recording, measured with the published path, beside the solver of the recording; each counts for the steps nearest to it, and their minutes are 500 times the mean step.")
@@ -36,7 +35,7 @@ def data_path(simulation):
 
 def _minutes(run, seconds):
     """Minutes of a sum over the steps of a run; of a composed one for all steps of the paper."""
-    return seconds / 60 * (STEPS / len(run.steps) if run.is_composed else 1)
+    return seconds / 60 * (STEPS_OF_PAPER / len(run.steps) if run.is_composed else 1)
 
 
 def _row(run, **columns):
@@ -89,7 +88,7 @@ def table3(folder):
     rows += [_row(run, total_min=_minutes(run, run.host("step")), **percentages(run)) for run in common_runs(folder) + folder.compositions()]
     for row in rows:
         row["collision_percent"] = sum(row[name] or 0 for name in columns[1:])
-        row.setdefault("steps", STEPS)
+        row.setdefault("steps", STEPS_OF_PAPER)
     return Table(3, "Parts of the time of a simulation", ordered(rows),
                  (COMMON, "The paper's are means of ten runs of its published path; ours are one run each. Our solver, including the assembly of its rows, runs on "
                   "one thread, as the paper's does. It has no relative tolerance and starts from the last step's forces; the paper's stops at a relative "
@@ -102,7 +101,7 @@ def table6(folder):
         total, read, write = run.host("step"), run.stage("read", "device_ns"), run.stage("write", "device_ns")
         rows.append(_row(run, total_min=_minutes(run, total), read_min=_minutes(run, read), write_min=_minutes(run, write), read_percent=100 * read / total, write_percent=100 * write / total))
     for row in rows:
-        row.setdefault("steps", STEPS)
+        row.setdefault("steps", STEPS_OF_PAPER)
     return Table(6, "Transfers of a simulation", ordered(rows), (COMMON, "Device times of uploads and downloads."))
 
 
@@ -113,5 +112,5 @@ def table7(folder):
     rows += [_row(run, **{f"{name}_min": _minutes(run, run.stage(name)) for name in names}) for run in runs]
     for row in rows:
         row["traverse_over_contact"] = ratio(row["traverse_min"], row["contact_min"])
-        row.setdefault("steps", STEPS)
+        row.setdefault("steps", STEPS_OF_PAPER)
     return Table(7, "Kernels of a simulation", ordered(rows), (COMMON, "Device times; a resident frame of rigid bodies is transformed in its refit."))
