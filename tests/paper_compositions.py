@@ -33,14 +33,14 @@ class Compositions(unittest.TestCase):
     def test_a_simulation_is_composed_of_its_recording_and_its_frames(self):
         """Stages and frames are those of the cell, the solver that of the simulation, in the steps that both have."""
         wanted = {"algorithm": "chunked", "preset": "published", "k": "8", "residency": "published"}
-        def files(contacts=1, real_ns=5 * 10**6):
+        def files(contacts=1, real_ns=6_250_000):
             cell = made.record("funnel", wanted, 1)
             made.set_quantity(cell, "stages:traverse", [made.FULL_STEPS * 7000])
             made.set_quantity(cell, "frame", [10**6 * made.FULL_STEPS])
             cell["frames"] = {"first": 20, "last": 49}
             steps = [made.step(i, contacts_found=contacts, stages={"traverse": 1}, host={"solve": 10**6 + i, "move": 0}) for i in range(60)]
             return {"steps-funnel": [cell], "sim-funnel": made.simulation("funnel", steps), "check-funnel": [cell],
-                    "serial-funnel": made.simulation("funnel", [made.step(i, host={"step": real_ns}) for i in range(30)])}
+                    "serial-funnel": made.simulation("funnel", [made.step(i, contacts_found=contacts, host={"step": real_ns}) for i in range(30)])}
         folder = self.folder(files())
         [run] = folder.compositions()
         self.assertEqual([step["step"] for step in run.steps], list(range(20, 50)))
@@ -50,11 +50,11 @@ class Compositions(unittest.TestCase):
         [row] = [row for row in table.rows if "composed" in row.get("data_path", "")]
         self.assertEqual((row["steps"], row["data_path"]), ("30 of 20:49", "published, conversion serial, composed"))
         self.assertAlmostEqual(row["total_min"], 500 / 60 * run.host("step") / 30)
-        self.assertIn("In 10 steps of funnel the composition takes 0.800 times as long", table.notes[-1])
-        self.assertNotIn("composition takes", simulation_tables.table3(self.folder({k: v for k, v in files().items() if k != "serial-funnel"})).notes[-1])
+        self.assertIn("In 10 steps of funnel, frames measured apart take 0.800 times as long", table.notes[-1])
+        self.assertNotIn("measured apart take", simulation_tables.table3(self.folder({k: v for k, v in files().items() if k != "serial-funnel"})).notes[-1])
         other = self.folder(files(contacts=2))
         self.assertEqual(other.compositions(), [], "steps with other contacts")
-        self.assertNotIn("composition takes", " ".join(simulation_tables.table3(other).notes))
+        self.assertNotIn("measured apart take", " ".join(simulation_tables.table3(other).notes))
 
     def test_a_composition_needs_the_contacts_of_its_recording(self):
         """Up to a hundredth of all contacts, which one frame with exact touches may have."""

@@ -160,10 +160,9 @@ class Folder:
                 found.append((path.stem, count, sum(len(rounds_of(record)) for record in records)))
         return found
 
-    def composition(self, scene, step):
-        """The simulation of a scene with the published data path, composed of its recording and of a step with its frames; None without one of them.
-        Raises NotMeasured if they have other contacts."""
-        run = self.simulation(f"sim-{scene}")
+    def composition(self, run, step):
+        """A simulation with the published data path, composed of `run` and of a step with its frames; None without one of them. Raises NotMeasured if
+        they have other contacts."""
         cells = [case for case in self.cases(step) if (case.algorithm, case.preset) == ("chunked", "published")]
         return composed(run, cells[0]) if run and cells else None
 
@@ -171,7 +170,7 @@ class Folder:
         """The simulation of a step, or "composed-SCENE"; None if it has not completed, or if its records are gone."""
         if step.startswith("composed-"):
             scene = step.removeprefix("composed-")
-            return self.composition(scene, f"steps-{scene}")
+            return self.composition(self.simulation(f"sim-{scene}"), f"steps-{scene}")
         if step not in self.named(step):
             return None
         lines_of_file = self._json_lines(f"records/{step}.jsonl")
@@ -181,16 +180,16 @@ class Folder:
     def simulations(self, beginning):
         return [run for run in map(self.simulation, self.named(beginning)) if run]
 
-    def composition_or_none(self, scene, step):
+    def composition_or_none(self, run, step):
         """The same, and None if they have other contacts."""
         try:
-            return self.composition(scene, step)
+            return self.composition(run, step)
         except NotMeasured:
             return None
 
     def compositions(self):
         """The simulations of all scenes that can be composed."""
-        return [run for run in (self.composition_or_none(scene, f"steps-{scene}") for scene in SCENES) if run]
+        return [run for run in (self.composition_or_none(self.simulation(f"sim-{scene}"), f"steps-{scene}") for scene in SCENES) if run]
 
     def ceilings(self):
         found = self._json_lines("records/ceilings.jsonl")

@@ -45,14 +45,15 @@ def _row(run, **columns):
 
 
 def _composition_note(folder):
-    """How near a composition is to a simulation that ran with the published path: of steps that both have."""
+    """How near frames that were measured apart, with the other parts of a simulation that ran with the published path, are to that simulation."""
     texts = []
     for real in folder.simulations("serial-"):
         scene = real.name.removeprefix("serial-")
-        made = folder.composition_or_none(scene, f"check-{scene}")
+        made = folder.composition_or_none(real, f"check-{scene}")
         value, count = composed_share_of(real, made) if made else (None, 0)
         if count:
-            texts.append(f"In {count} steps of {scene} the composition takes {written(value)} times as long as a simulation with the published path.")
+            texts.append(f"In {count} steps of {scene}, frames measured apart take {written(value)} times as long, with the other parts of a simulation with the published path, "
+                         "as that simulation.")
     return tuple(texts)
 
 
