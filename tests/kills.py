@@ -47,7 +47,7 @@ class Kills(Case):
         return {"run": ("run", *cells, "--resume", "--out", folder / "new.jsonl"),
                 "plan": ("run", self.plan, "--resume", "--out", folder / "new.jsonl"),
                 "simulate": ("simulate", "arch:segments=2", "--steps", 20, "--checkpoint", 3, "--device", "host", "-o", folder / "a.frames", "--record", folder / "new.jsonl", "--quiet"),
-                "paper": ("paper", "--device", "host", "-o", folder, "--steps", "27:28", "--measure-only")}[command]
+                "paper": ("paper", "--device", "host", "-o", folder, "--steps", "chunks-morton,chunks-breadth", "--measure-only")}[command]
 
     def start(self, command, folder):
         words = self.words(command, folder)

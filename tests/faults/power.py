@@ -140,7 +140,7 @@ class Power(Case):
         return {"run": ("run", *cells, "--out", folder / "new.jsonl"), "append": ("run", *cells, "--out", folder / "old.jsonl"),
                 "simulate": ("simulate", "arch:segments=2", "--steps", 5, "--checkpoint", 2, "--dynamics", "absolute_tolerance=1", "--device", "host", "-o", folder / "a.frames",
                              "--record", folder / "s.jsonl", "--quiet"),
-                "paper": ("paper", "--device", "host", "-o", folder / "paper", "--steps", "27:28", "--measure-only")}[command]
+                "paper": ("paper", "--device", "host", "-o", folder / "paper", "--steps", "chunks-morton,chunks-breadth", "--measure-only")}[command]
 
     def goes_on(self, command, folder):
         has_any = (folder / "a.frames").exists() if command == "simulate" else command in ("run", "append")
