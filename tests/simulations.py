@@ -117,6 +117,17 @@ class Simulations(Case):
             self.assertEqual([found[name] for name in ("iterations", "relative_tolerance", "absolute_tolerance", "warm_start", "post_stabilize")],
                              [iterations, "0.01", "0.01", "0", "0"])
 
+    def test_the_preset_of_the_paper_merges_equal_contacts(self):
+        """Tetrahedra with a common edge or vertex make the same contact, as those of stacked blocks do."""
+        record = self.work / "simulation-merged.jsonl"
+        kept = []
+        for more in ((), ("--dynamics", "merge_distance=0")):
+            self.outputs("simulate", "block:bodies=3,stack=1", "--device", "host", "--steps", 1, "--record", record, "--dynamics", "paper", *more)
+            step = self.lines(record)[0][-1]
+            kept.append(step["contacts_kept"] / step["contacts_found"])
+        self.assertLess(kept[0], 0.5)
+        self.assertEqual(kept[1], 1)
+
     def test_steps_that_do_not_converge_are_reported(self):
         """One line at the first such step and one with the total; the record has the same counts. A resumed run
         counts each step once and gives the same result."""
