@@ -3,6 +3,7 @@
 support."""
 import functools
 import math
+import statistics
 
 import numpy
 
@@ -86,6 +87,34 @@ def least_rank_sum_p(before, after):
     for i in range(1, small + 1):
         p *= i / (large + i)
     return min(1.0, p)
+
+
+def _tail(counts, most):
+    """The largest number whose lower tail in `counts` has at most the probability `most`, and this probability. If 0 has more: 0."""
+    below = numpy.cumsum(counts) / counts.sum()
+    at = max(0, int(numpy.searchsorted(below, most, "right")) - 1)
+    return at, float(below[at])
+
+
+def _approximate_tail(mean, variance, most):
+    at = max(0, math.floor(mean - 0.5 + statistics.NormalDist().inv_cdf(most) * math.sqrt(variance)))
+    return at, 0.5 * math.erfc((mean - 0.5 - at) / math.sqrt(2 * variance))
+
+
+def signed_rank_tail(pairs, most):
+    """The largest sum of signed ranks, without ties, whose lower tail has at most the probability `most`, and this probability. If sum 0 has
+    more: 0 and its probability."""
+    if pairs > MAX_PAIRS:
+        return _approximate_tail(pairs * (pairs + 1) / 4, pairs * (pairs + 1) * (2 * pairs + 1) / 24, most)
+    return _tail(_sets(tuple(range(1, pairs + 1))), most)
+
+
+def rank_sum_tail(before, after, most):
+    """As signed_rank_tail, of Mann and Whitney's U."""
+    small = min(before, after)
+    if small * (before + after) > MAX_SUMS:
+        return _approximate_tail(before * after / 2, before * after * (before + after + 1) / 12, most)
+    return _tail(_sets_of(small, tuple(range(1, before + after + 1)))[small * (small + 1) // 2:], most)
 
 
 def holm(p):

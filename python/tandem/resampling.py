@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Ratios of medians with bootstrap intervals, for tandem compare. They are reproducible to the bit: the seed is fixed, and the generator is
+"""Ratios of medians with bootstrap intervals. They are reproducible to the bit: the seed is fixed, and the generator is
 specified to the bit (mt19937_64: Nishimura 2000, ACM TOMACS 10(4); the C++ standard has its constants)."""
 import dataclasses
 import functools
@@ -74,12 +74,12 @@ def _within(angle, freedom):
     return 2 * (1 / math.pi) * (angle + math.sin(angle) * total) if odd else math.sin(angle) * total
 
 
-def _student_quantile(freedom):
-    """t with 97.5 % of Student's distribution below it."""
+def student_quantile(freedom, probability=0.95):
+    """t so that a variable of Student's distribution lies between -t and t with this probability."""
     low, high = 0.0, math.pi / 2
     for _ in range(60):
         middle = (low + high) / 2
-        low, high = (middle, high) if _within(middle, freedom) < 0.95 else (low, middle)
+        low, high = (middle, high) if _within(middle, freedom) < probability else (low, middle)
     return math.tan(low) * math.sqrt(freedom)
 
 
@@ -88,7 +88,7 @@ def interval_tail(values):
     """The fraction of resamples on each side of a 95 % interval of this number of values: expanded percentiles (Hesterberg 2015, 4.3)."""
     if values < 2:
         return 0.0
-    width = math.sqrt(values / (values - 1)) * _student_quantile(values - 1)
+    width = math.sqrt(values / (values - 1)) * student_quantile(values - 1)
     return math.erfc(width / math.sqrt(2)) / 2
 
 

@@ -5,7 +5,7 @@ import dataclasses
 import math
 import statistics
 
-from .. import rank_tests, resampling
+from .. import rank_ratios, rank_tests, resampling
 from .cells import RecordedCell
 from .pooling import is_minority, pooled
 
@@ -115,10 +115,10 @@ def _compared(before, after, threshold, undisturbed=False):
         return cell
     cell.least_p = _least_p(paired, len(old), len(new))
     if paired:
-        cell.ratio = resampling.paired_ratio(old, new)
+        cell.ratio = rank_ratios.paired_ratio(old, new)
         cell.p, cell.exact = rank_tests.signed_ranks([math.log(b / a) for a, b in zip(old, new)])
     else:
-        cell.ratio = resampling.unpaired_ratio(old, new)
+        cell.ratio = rank_ratios.unpaired_ratio(old, new)
         cell.p, cell.exact = rank_tests.rank_sums(old, new)
     return cell
 
