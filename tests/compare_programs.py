@@ -14,7 +14,7 @@ from program import LONG, PROGRAM, SOURCE, Case, tandem
 LINE = json.loads((SOURCE / "results/h200/plates.jsonl").read_text().split("\n", 1)[0])
 # Appends a record to the file of --out, as 'tandem run' does. Times drift by 20 % a turn.
 PROGRAM_TEXT = """#!/usr/bin/python3
-import json, os, pathlib, signal, sys, time
+import json, os, pathlib, select, signal, sys, time
 made, words = json.loads({record!r}), sys.argv[1:]
 out = pathlib.Path(words[words.index("--out") + 1])
 with open({log!r}, "a") as log:
@@ -100,6 +100,37 @@ class ComparePrograms(Case):
         silent = self.program("b", before="sys.exit(0)")
         self.run_both(self.program("a"), silent, code=3, errors=[f"tandem: {silent} wrote no record in turn 1; give a build of this program"])
 
+    TURNS = """
+goes, asks, seed = map(int, os.environ["TANDEM_TURNS"].split(","))
+for i in range(rounds):
+    os.write(asks, b"r")
+    while not asked and not select.select([goes], [], [], 0.01)[0]: pass
+    if not asked: os.read(goes, 1)
+    with open({log!r}, "a") as log: log.write(json.dumps([sys.argv[0][-1] + str(i), seed]) + "\\n")
+"""
+
+    def test_rounds_alternate(self):
+        """The orders of cells in rounds have one seed in a turn. The longer one goes on alone."""
+        turns = self.TURNS.format(log=str(self.log))
+        self.run_both(self.program("a", before="rounds = 3" + turns), self.program("b", before="rounds = 2" + turns), "--sessions", 2)
+        rounds = [(name, *rest) for name, *rest in self.started() if name[1:].isdigit()]
+        self.assertEqual([name for name, _ in rounds], ["a0", "b0", "a1", "b1", "a2", "b0", "a0", "b1", "a1", "a2"])
+        self.assertEqual([seed for _, seed in rounds], [1] * 5 + [2] * 5)
+        self.assertEqual([name for name, *_ in self.started() if name in "ab"], ["a", "b", "b", "a"])
+
+    def test_a_failure_ends_the_other_process(self):
+        """It waits for its turn, and its round is lost."""
+        turns = self.TURNS.format(log=str(self.log))
+        ended = "rounds = 3" + turns + "    if asked: sys.exit(143)\n"
+        lost = self.program("b", before="rounds = 1" + turns + 'print("tandem: the device is lost", file=sys.stderr); sys.exit(3)')
+        self.run_both(self.program("a", before=ended), lost, code=3, errors=[f"tandem: {lost} failed in turn 1: the device is lost"])
+        refused = self.program("b", before='print("tandem: no such scene", file=sys.stderr); sys.exit(2)')
+        self.bad(f"{refused}: no such scene", "compare", "--run", self.program("a", before=ended), refused, "--", "plates")
+
+    def test_many_messages_do_not_block(self):
+        many = self.program("a", before='print("tandem: x\\n" * 100000, file=sys.stderr)\nrounds = 2' + self.TURNS.format(log=str(self.log)))
+        self.run_both(many, many, "--sessions", 2)
+
     def test_an_interrupt_keeps_whole_turns(self):
         waits = self.program("b", before="while turn == 2 and not asked: time.sleep(0.01)")
         folder = self.work / "interrupted"
@@ -147,9 +178,10 @@ class ComparePrograms(Case):
         self.assertGreaterEqual(found.count("slower"), 0.9 * (len(found) - found.count("disturbed")), found)
 
     def verdicts(self, new, comparisons, allowed):
-        """The verdicts of the program against another one, four cells each, which are all allowed. The machine's noise exceeds 3 % without a core
-        of its own."""
-        found = []
+        """The verdicts of the program against another one, four cells each, which are all allowed. All processes run on one core."""
+        found, cores = [], os.sched_getaffinity(0)
+        os.sched_setaffinity(0, {max(cores)})
+        self.addCleanup(os.sched_setaffinity, 0, cores)
         for _ in range(comparisons):
             _, out, errors = tandem("compare", "--run", "--format", "json", PROGRAM, new, "--", "plates:count=2", "--frames", 20, "--device", "host", "--threads", 1,
                                     "--algorithm", "tiled,leaf_query", "--set", "k=8,18", "--repeat", 3, "--no-check", "--truth", "none", "--no-count")

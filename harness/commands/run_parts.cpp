@@ -4,6 +4,8 @@
 #include "base/standard_streams.h"
 #include "harness/plans/key.h"
 #include "harness/record/table/table.h"
+#include "harness/sampling/interrupt.h"
+#include "harness/sampling/turns.h"
 #include "harness/record/answer.h"
 
 #include <fmt/format.h>
@@ -25,7 +27,9 @@ Measuring measuring_of(const RunOptions& options) {
     Measuring measuring;
     measuring.check = {options.check, options.count, nullptr};
     measuring.stopping = {options.repeat, options.noise, options.seconds};
-    measuring.seed = options.seed ? *options.seed : std::random_device{}();
+    const auto turns = Turns::from_environment();
+    measuring.seed = options.seed ? *options.seed : turns ? turns->seed() : std::random_device{}();
+    if (turns) measuring.before_round = [turns = *turns] { turns.wait(Interrupt::asked); };
     return measuring;
 }
 

@@ -139,6 +139,7 @@ bool measure_cells(const Job& job, std::span<const Cell> cells, References& refe
     rounds.progress = [&](std::string_view text, std::optional<double> left) {
         listener.progress.show(fmt::format("{}/{} {}", done, cells.size(), text), left);
     };
+    rounds.before_round = measuring.before_round;
     rounds.stop = [&] { return sink.failed() || measuring.stop(); };
     rounds.kept = [&](const CellSampler& sampler, bool is_first) {
         sink.keep(sampler, requested_key(sampler.cell(), job), is_first);

@@ -34,6 +34,7 @@ struct Measuring {
     StoppingCriterion stopping;
     std::uint64_t seed = 0;
     Unfinished* unfinished = nullptr; ///< stores the rounds of unfinished cells; null: they are not stored
+    std::function<void()> before_round = [] {};
     std::function<bool()> stop = [] { return false; };
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "harness/sampling/conditions.h"
 
+#include "harness/sampling/turns.h"
+
 #include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -37,13 +39,17 @@ void add_gpu(std::string& reasons, const GpuCondition& before, const GpuConditio
 } // namespace
 
 ConditionReader::ConditionReader(const DeviceGroup& devices, std::string root, std::function<OwnUse()> own)
-    : processor_(std::move(root), std::move(own)) {
+    : processor_(std::move(root), std::move(own)), takes_turns_(Turns::are_taken()) {
     for (const auto* device : devices) gauges_.emplace_back(device->info());
 }
 
 Condition ConditionReader::read() {
     Condition condition{.processor = processor_.read(), .gpus = {}};
-    for (const auto& gauge : gauges_) condition.gpus.push_back(gauge.read());
+    for (const auto& gauge : gauges_) {
+        auto gpu = gauge.read();
+        if (takes_turns_ && gpu.processes.value_or(0) > 0) --*gpu.processes;
+        condition.gpus.push_back(gpu);
+    }
     return condition;
 }
 

@@ -35,6 +35,7 @@ public:
 private:
     ProcessorReader processor_;
     std::vector<GpuGauge> gauges_;
+    bool takes_turns_; ///< with another process, which does not compute while this one does
 };
 
 /// Limits above which a sample is doubtful.

@@ -107,6 +107,25 @@ std::optional<double> pressure_of(const std::string& root) {
     return percent;
 }
 
+/// Empty when a core is unknown.
+std::optional<ProcessorLoad> load(const std::string& root, const OwnUse& use) {
+    const auto per_second = static_cast<double>(sysconf(_SC_CLK_TCK));
+    ProcessorLoad sum{.cores = use.cores, .own = use.seconds};
+    std::size_t found = 0;
+    std::ifstream file(root + "/proc/stat");
+    for (std::string line; std::getline(file, line) && line.starts_with("cpu");) {
+        const auto core = ticks_in(line);
+        if (!core || !is_among(use.cores, core->first)) continue;
+        ++found;
+        sum.busy += core->second.busy / per_second;
+        sum.elapsed += core->second.all / per_second / static_cast<double>(use.cores.size());
+    }
+    if (found == 0 || found != use.cores.size()) return std::nullopt;
+    return sum;
+}
+
+ProcessorLoad left_out; ///< by ProcessorReader::leave_out
+
 } // namespace
 
 OwnUse own_use() {
@@ -130,24 +149,24 @@ ProcessorReader::ProcessorReader(std::string root, std::function<OwnUse()> own)
     update_throttled(read_control_group(root_).throttled);
 }
 
-std::optional<ProcessorReader::Load> ProcessorReader::load(const OwnUse& use) const {
-    const auto per_second = static_cast<double>(sysconf(_SC_CLK_TCK));
-    Load sum{.cores = use.cores, .own = use.seconds};
-    std::size_t found = 0;
-    std::ifstream file(root_ + "/proc/stat");
-    for (std::string line; std::getline(file, line) && line.starts_with("cpu");) {
-        const auto core = ticks_in(line);
-        if (!core || !is_among(use.cores, core->first)) continue;
-        ++found;
-        sum.busy += core->second.busy / per_second;
-        sum.elapsed += core->second.all / per_second / static_cast<double>(use.cores.size());
-    }
-    if (found == 0 || found != use.cores.size()) return std::nullopt;
-    return sum;
+void ProcessorReader::leave_out(const std::function<void()>& wait, const std::string& root,
+                                const std::function<OwnUse()>& own) {
+    const auto before = load(root, own());
+    wait();
+    const auto after = load(root, own());
+    if (!before || !after || before->cores != after->cores) return;
+    left_out.elapsed += after->elapsed - before->elapsed;
+    left_out.busy += after->busy - before->busy;
+    left_out.own += after->own - before->own;
 }
 
 void ProcessorReader::update_load(const OwnUse& use) {
-    auto now = load(use);
+    auto now = load(root_, use);
+    if (now) {
+        now->elapsed -= left_out.elapsed;
+        now->busy -= left_out.busy;
+        now->own -= left_out.own;
+    }
     if (!now || !base_ || now->cores != base_->cores || now->elapsed < base_->elapsed) {
         own_ = other_processes_ = std::nullopt;
         base_ = std::move(now);

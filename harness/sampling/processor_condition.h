@@ -31,6 +31,14 @@ struct OwnUse {
 
 OwnUse own_use();
 
+/// Seconds since the machine started, on the cores of this process.
+struct ProcessorLoad {
+    std::vector<unsigned> cores;
+    double elapsed = 0; ///< of one core
+    double busy = 0;    ///< of all of them
+    double own = 0;
+};
+
 /// Reads conditions of the processor. `own` and `others` are means over consecutive periods of at least
 /// shortest_period, because Linux counts in hundredths of a second. A reading within a period repeats the
 /// values of the last one; they are unknown before the first period ends. Reads the clocks of at most
@@ -43,25 +51,20 @@ public:
     /// `root` is the prefix of every path under /proc and /sys.
     explicit ProcessorReader(std::string root = "/", std::function<OwnUse()> own = own_use);
 
+    /// Calls `wait`, and leaves the processor use meanwhile out of the values of all readers of this process.
+    static void leave_out(const std::function<void()>& wait, const std::string& root = "/",
+                          const std::function<OwnUse()>& own = own_use);
+
     /// Never throws. Lasts a fraction of a millisecond: do not call it within a timed span.
     ProcessorCondition read();
 
 private:
-    /// Seconds since the machine started, on the cores of this process.
-    struct Load {
-        std::vector<unsigned> cores;
-        double elapsed = 0; ///< of one core
-        double busy = 0;    ///< of all of them
-        double own = 0;
-    };
-
-    std::optional<Load> load(const OwnUse& use) const;
     void update_load(const OwnUse& use);
     std::optional<std::uint64_t> update_throttled(std::optional<std::uint64_t> now);
 
     std::string root_;
     std::function<OwnUse()> own_use_;
-    std::optional<Load> base_; ///< at the beginning of the current period
+    std::optional<ProcessorLoad> base_; ///< at the beginning of the current period
     std::optional<double> own_, other_processes_;
     std::optional<std::uint64_t> throttled_;
 };

@@ -154,6 +154,7 @@ bool Group::begin(Outcome& outcome) {
             // with a new session.
             if (next_samples(cell) > 0) cell.release();
             show(fmt::format("{}: first round", name(outcome)));
+            listener_.before_round();
             cell.round(next_samples(cell));
         }
         const auto counting = std::chrono::steady_clock::now();
@@ -167,6 +168,7 @@ bool Group::round(Outcome& outcome) {
     auto& cell = *outcome.sampler;
     show(fmt::format("{}: round {}", name(outcome), cell.measurement().round_count() + 1));
     return run_round(outcome, false, [&] {
+        listener_.before_round();
         cell.round(next_samples(cell));
         cell.release();
     });

@@ -45,6 +45,8 @@ struct RoundsListener {
     std::function<void(const Outcome&, const Sampling&)> finished = [](const Outcome&, const Sampling&) {};
     /// Called after each round of a cell that needs more rounds; `first` for the first round of this run.
     std::function<void(const CellSampler&, bool first)> kept = [](const CellSampler&, bool) {};
+    /// Called before each round of a cell.
+    std::function<void()> before_round = [] {};
     /// Called between rounds and before each frame: whether to end now with the results so far.
     std::function<bool()> stop = [] { return false; };
 };

@@ -117,6 +117,30 @@ TEST_F(Conditions, ShortPeriodsAreMerged) {
         << "over the whole period";
 }
 
+TEST_F(Conditions, WaitingForAnotherProcessIsLeftOut) {
+    write_stat(1000, 100);
+    auto processor = reader();
+    own = 4;
+    write_stat(1005, 102);
+    ProcessorReader::leave_out(
+        [&] {
+            own = 5;
+            write_stat(1025, 122);
+        },
+        path(""),
+        [this] {
+            return OwnUse{cores, own};
+        });
+    own = 9;
+    write_stat(1030, 124.24);
+    const auto c = processor.read();
+    EXPECT_THAT(c.own, Optional(DoubleNear(0.8, 1e-9)));
+    EXPECT_THAT(c.other_processes, Optional(DoubleNear(0.048, 1e-9)));
+    // What follows counts again.
+    write_stat(1040, 134.24);
+    EXPECT_THAT(processor.read().other_processes, Optional(DoubleNear(2, 1e-9)));
+}
+
 TEST_F(Conditions, ADifferentSetOfCoresRestartsThePeriod) {
     write_stat(1000, 100);
     auto processor = reader();

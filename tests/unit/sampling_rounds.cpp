@@ -50,6 +50,7 @@ protected:
             outcomes_.push_back(outcome);
             sampling_ = sampling;
         };
+        listener.before_round = [&] { turns_at_rounds_.push_back(turns_.size()); };
         listener.stop = [&] { return turns_.size() >= most_turns_; };
         return sample_group(group, check_, criterion, seed, listener);
     }
@@ -61,7 +62,8 @@ protected:
     std::deque<Cell> cells_;
     std::deque<LocalSampler> samplers_;
     CheckOptions check_;
-    std::vector<std::string> turns_; ///< a line for each turn of a cell
+    std::vector<std::string> turns_;           ///< a line for each turn of a cell
+    std::vector<std::size_t> turns_at_rounds_; ///< at the beginning of each round
     std::size_t most_turns_ = 1000000;
     std::vector<Outcome> outcomes_;
     Sampling sampling_;
@@ -81,6 +83,7 @@ TEST_F(SamplingRounds, RepeatFixesTheNumberOfSamples) {
     }
     EXPECT_EQ(sampling_.cells, 3u);
     EXPECT_EQ(turns_.size(), 12u);
+    EXPECT_THAT(turns_at_rounds_, ElementsAre(1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12));
 }
 
 TEST_F(SamplingRounds, WithoutSamplesThereAreAnswersAndOneBreakdown) {

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Measures two builds of the program by turns, for 'tandem compare --run': each turn starts one process of each build, so that drift of the
-machine affects both. The process is the unit of the comparison, and the processes of one turn are a pair."""
+"""Measures two builds of the program by turns, for 'tandem compare --run'. Each turn starts one process of each build. Both take their rounds
+alternately, one process at a time, so that drift of the machine affects both. The process is the unit of the comparison, and the processes of
+one turn are a pair."""
+import contextlib
 import dataclasses
 import json
 import os
@@ -8,6 +10,7 @@ import pathlib
 import signal
 import subprocess
 import sys
+import tempfile
 
 from .. import lines
 from ..errors import BadUse
@@ -30,12 +33,58 @@ class Ended:
     wrong: bool = False
 
 
+class _Process:
+    """A process that runs a program. It asks for its turn before each round (harness/sampling/turns.h); older builds never ask."""
+
+    def __init__(self, command, seed):
+        goes, self._goes = os.pipe()
+        self._asks, asks = os.pipe()
+        self._errors = tempfile.TemporaryFile()  # nobody would read a pipe while the process waits for its turn
+        try:
+            self._process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=self._errors, pass_fds=(goes, asks),
+                                             env=os.environ | {"TANDEM_TURNS": f"{goes},{asks},{seed}"})
+        except OSError:
+            os.close(self._goes)
+            os.close(self._asks)
+            raise
+        finally:
+            os.close(goes)
+            os.close(asks)
+
+    def asks(self):
+        """Whether the process waits for its turn; False when it has ended."""
+        return os.read(self._asks, 1) != b""
+
+    def go(self):
+        """Lets it take one round."""
+        with contextlib.suppress(BrokenPipeError):
+            os.write(self._goes, b"g")
+
+    def end(self, number):
+        if self._process.poll() is None:
+            self._process.send_signal(number)
+
+    def result(self):
+        """Waits for its end. Returns the exit code and the last line of messages."""
+        code = self._process.wait()
+        for pipe in (self._goes, self._asks):
+            os.close(pipe)
+        with self._errors as errors:
+            errors.seek(0)
+            messages = errors.read().decode(errors="replace").strip().splitlines()
+        return code, one_line(messages[-1].removeprefix("tandem: "), 1000) if messages else f"exit code {code}"
+
+
 class _Signals:
-    """While it is entered, signals that ask this process to end are passed on once to the running program, which then ends its round and
-    writes its records. A second Ctrl-C ends this process."""
+    """While it is entered, signals that ask this process to end are passed on once to the running programs, which then end their rounds and
+    write their records. A second Ctrl-C ends this process."""
 
     def __init__(self):
-        self.asked, self.process = 0, None
+        self.asked, self.processes = 0, []
+
+    def end_processes(self):
+        for process in self.processes:
+            process.end(signal.SIGTERM)
 
     def __enter__(self):
         self._before = {number: signal.signal(number, self._handle) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
@@ -43,14 +92,17 @@ class _Signals:
         return self
 
     def __exit__(self, *_):
+        self.end_processes()  # those that an error left behind
+        for process in self.processes:
+            process.result()
         for number, handler in self._before.items():
             signal.signal(number, handler)
 
     def _handle(self, number, _):
         if number == signal.SIGINT:
             signal.signal(signal.SIGINT, signal.SIG_DFL)
-        if not self.asked and self.process:
-            self.process.send_signal(signal.SIGTERM)
+        if not self.asked:
+            self.end_processes()
         self.asked = self.asked or number
 
 
@@ -95,36 +147,58 @@ class Turns:
         with _Signals() as signals:
             for turn in range(1, count + 1):
                 self._ended.turns = turn
-                # The second process of a turn may find a warmer machine, so that the order changes from turn to turn.
-                for side in SIDES if turn % 2 else reversed(SIDES):
-                    if not self._ended.failure:
-                        self._run(signals, side, turn)
-                    if signals.asked:
-                        self._ended.failure, self._ended.signal = f"interrupted in turn {turn} of {count}", signals.asked
+                self._take(signals, turn)
+                if signals.asked:
+                    self._ended.failure, self._ended.signal = f"interrupted in turn {turn} of {count}", signals.asked
                 if self._ended.failure:
                     break
         return self._ended
 
+    def _take(self, signals, turn):
+        """One turn. The second process of a pair may find a warmer machine, so that the order changes from turn to turn."""
+        waiting = []
+        for side in SIDES if turn % 2 else reversed(SIDES):
+            if signals.asked or self._ended.failure:
+                break
+            process = self._started(side, turn)
+            signals.processes.append(process)
+            if process.asks():
+                waiting.append((side, process))
+            else:
+                self._finish(signals, side, turn, process)
+        while waiting:
+            for side, process in tuple(waiting):
+                process.go()
+                if not process.asks():
+                    waiting.remove((side, process))
+                    self._finish(signals, side, turn, process)
+
     def _file(self, side, turn):
         return self._folder / f"{side}-{turn}.jsonl"
 
-    def _run(self, signals, side, turn):
-        out = self._file(side, turn)
-        line = [self._programs[side], "run", *self._words, "--quiet", "--out", str(out)]
+    def _started(self, side, turn):
+        line = [self._programs[side], "run", *self._words, "--quiet", "--out", str(self._file(side, turn))]
         try:
-            signals.process = subprocess.Popen(line, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+            return _Process(line, turn)
         except OSError as problem:
             raise BadUse(f"{self._names[side]}: cannot be started ({problem.strerror}); give a build of this program") from None
-        messages = signals.process.communicate()[1].decode(errors="replace").strip().splitlines()
-        code, signals.process = signals.process.returncode, None
-        message = one_line(messages[-1].removeprefix("tandem: "), 1000) if messages else f"exit code {code}"
+
+    def _finish(self, signals, side, turn, process):
+        """Takes the results of a process that has ended. After a failure the other process of the turn ends early."""
+        code, message = process.result()
+        signals.processes.remove(process)
+        out = self._file(side, turn)
         if code == 2:
             raise BadUse(f"{self._names[side]}: {message}")
         self._ended.wrong |= code == 1
-        if code not in (0, 1):
+        if self._ended.failure or signals.asked:
+            pass  # it was asked to end
+        elif code not in (0, 1):
             self._ended.failure = f"{self._names[side]} failed in turn {turn}: {f'signal {-code}' if code < 0 else message}"
+            signals.end_processes()
         elif not out.exists():
             self._ended.failure = f"{self._names[side]} wrote no record in turn {turn}; give a build of this program"
+            signals.end_processes()
         self._convert(out)
 
     def _convert(self, path):
