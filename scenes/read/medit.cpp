@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace tandem::read {
 
@@ -16,6 +17,16 @@ constexpr std::array<std::string_view, 6> foreign = {"Tetrahedra", "Hexahedra", 
 
 bool is_foreign(std::string_view keyword) {
     return std::any_of(foreign.begin(), foreign.end(), [&](auto name) { return keyword.starts_with(name); });
+}
+
+/// Nodes of a tetrahedron of order 2, 3 or 4, which has (order + 1) (order + 2) (order + 3) / 6, beside its
+/// corners, which come first; 0 for other keywords.
+std::size_t nodes_beside_corners(std::string_view keyword) {
+    constexpr std::array<std::pair<std::string_view, std::size_t>, 3> nodes{
+        {{"TetrahedraP2", 6}, {"TetrahedraP3", 16}, {"TetrahedraP4", 31}}};
+    const auto found =
+        std::find_if(nodes.begin(), nodes.end(), [&](auto& one) { return one.first == keyword; });
+    return found == nodes.end() ? 0 : found->second;
 }
 
 /// Keywords begin with a letter; numbers do not.
@@ -66,7 +77,9 @@ void skip_section(Scanner& in, std::string_view keyword, const MeshReading& read
         const bool is_tetrahedra = keyword.starts_with("Tetrahedra");
         if (n > 0 && (is_tetrahedra || !reading.only_tetrahedra))
             in.fail(fmt::format("cells of type {} are not linear tetrahedra", in_quotes(keyword)),
-                    is_tetrahedra ? corners_remedy : only_remedy);
+                    nodes_beside_corners(keyword) > 0 ? corners_remedy
+                    : is_tetrahedra                   ? "convert to linear tetrahedra"
+                                                      : only_remedy);
         mesh.findings.other_cells += n;
     }
     skip_numbers(in);
@@ -97,8 +110,8 @@ Mesh parse_medit(std::string_view bytes, const std::string& source, const MeshRe
             read_vertices(in, mesh);
         } else if (keyword == "Tetrahedra") {
             read_tetrahedra(in, mesh, 0);
-        } else if (keyword == "TetrahedraP2" && reading.corners) {
-            read_tetrahedra(in, mesh, 6);
+        } else if (const auto more = nodes_beside_corners(keyword); more > 0 && reading.corners) {
+            read_tetrahedra(in, mesh, more);
         } else {
             skip_section(in, keyword, reading, mesh);
         }

@@ -121,6 +121,29 @@ TEST(Topology, CornersAndOnlyTetrahedra) {
     EXPECT_EQ(read(second_order, {.corners = true, .only_tetrahedra = true}).findings.other_cells, 1u);
 }
 
+/// Gmsh writes orders 2 to 4, corners first.
+TEST(Topology, MeditHasOrdersUpToFour) {
+    const auto of_order = [](const std::string& order, std::size_t nodes) {
+        std::string text = second_order;
+        text.resize(text.find("TetrahedraP2"));
+        text += "TetrahedraP" + order + " 2\n";
+        for (const auto* corners : {"1 2 3 4 ", "2 3 4 5 "}) {
+            text += corners;
+            for (std::size_t i = 4; i < nodes; ++i) text += "9 ";
+            text += "1\n";
+        }
+        return text + "End\n";
+    };
+    for (const auto& [order, nodes] : {std::pair{"2", 10u}, {"3", 20u}, {"4", 35u}}) {
+        expect_failure("high.mesh", of_order(order, nodes), ":3", "--corners");
+        const auto mesh = read(of_order(order, nodes), {.corners = true});
+        EXPECT_EQ(mesh.tetrahedra, (std::vector<Tetrahedron>{{0, 1, 2, 3}, {1, 2, 3, 4}})) << order;
+        EXPECT_EQ(mesh.findings.reduced, 2u);
+    }
+    expect_failure("high.mesh", of_order("5", 56), ":3", "; convert to linear tetrahedra");
+    EXPECT_THROW(read(of_order("5", 56), {.corners = true}), InputError);
+}
+
 constexpr auto gmsh_mixed =
     "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n8\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n"
     "5 1 1 0\n6 1 0 1\n7 0 1 1\n8 1 1 1.5e-405\n$EndNodes\n$Elements\n2\n"
