@@ -62,11 +62,11 @@ class ComparePrograms(Case):
         """The drift from turn to turn is far larger than the change."""
         out = self.run_both(self.program("a"), self.program("b", 1.05), "--format", "json", code=1)
         cell, = json.loads(out)["cells"]
-        self.assertEqual((cell["verdict"], cell["paired"], cell["unit"], cell["old"]["sessions"], cell["old"]["rounds"]), ("slower", True, "session", 10, 90))
+        self.assertEqual((cell["verdict"], cell["paired"], cell["unit"], cell["old"]["sessions"], cell["old"]["rounds"]), ("slower", True, "session", 12, 108))
         self.assertAlmostEqual(cell["times"]["ratio"], 1.05, places=6)
-        self.assertAlmostEqual(cell["times"]["p"], 2 / 2**10)
+        self.assertAlmostEqual(cell["times"]["p"], 2 / 2**12)
         out = self.run_both(self.program("a"), self.program("b"))
-        self.assertIn("1 cell is compared by sessions: 10 of old and 10 of new", out)
+        self.assertIn("1 cell is compared by sessions: 12 of old and 12 of new", out)
 
     def test_records_are_kept(self):
         folder = self.work / "kept"
@@ -141,7 +141,7 @@ for i in range(rounds):
         time.sleep(0.2)  # until the program has set its handler
         process.send_signal(signal.SIGINT)
         out, errors = process.communicate()
-        self.assertEqual((process.returncode, errors), (130, "tandem: interrupted in turn 2 of 10\n"), out)
+        self.assertEqual((process.returncode, errors), (130, "tandem: interrupted in turn 2 of 12\n"), out)
         self.assertIn("compared by sessions: 1 of old and 2 of new", out)
         self.assertEqual(sorted(path.name for path in folder.iterdir()), ["new-1.jsonl", "new-2.jsonl", "old-1.jsonl"])
 
@@ -169,22 +169,22 @@ for i in range(rounds):
     @unittest.skipUnless(LONG, "long form")
     def test_one_program_against_itself(self):
         """No cell of 25 comparisons changes, whatever else the machine does."""
-        self.verdicts(PROGRAM, 25, {"not_shown", "within_threshold", "disturbed"})
+        self.verdicts(PROGRAM, 25, 3, {"not_shown", "within_threshold", "disturbed"})
 
     @unittest.skipUnless(LONG, "long form")
     def test_five_percent_are_found(self):
         """In 45 of 50 cells that other work does not disturb."""
-        found = self.verdicts(PROGRAM.parent / "tests/slower", 13, {"slower", "not_shown", "within_threshold", "disturbed"})
+        found = self.verdicts(PROGRAM.parent / "tests/slower", 13, 10, {"slower", "not_shown", "within_threshold", "disturbed"})
         self.assertGreaterEqual(found.count("slower"), 0.9 * (len(found) - found.count("disturbed")), found)
 
-    def verdicts(self, new, comparisons, allowed):
+    def verdicts(self, new, comparisons, rounds, allowed):
         """The verdicts of the program against another one, four cells each, which are all allowed. All processes run on one core."""
         found, cores = [], os.sched_getaffinity(0)
         os.sched_setaffinity(0, {max(cores)})
         self.addCleanup(os.sched_setaffinity, 0, cores)
         for _ in range(comparisons):
             _, out, errors = tandem("compare", "--run", "--format", "json", PROGRAM, new, "--", "plates:count=2", "--frames", 20, "--device", "host", "--threads", 1,
-                                    "--algorithm", "tiled,leaf_query", "--set", "k=8,18", "--repeat", 3, "--no-check", "--truth", "none", "--no-count")
+                                    "--algorithm", "tiled,leaf_query", "--set", "k=8,18", "--repeat", rounds, "--no-check", "--truth", "none", "--no-count")
             self.assertEqual(errors, [])
             found += [cell["verdict"] for cell in json.loads(out)["cells"]]
         print(f"\n  {len(found)} cells: {', '.join(f'{found.count(one)} {one}' for one in sorted(set(found)))}", file=sys.stderr)

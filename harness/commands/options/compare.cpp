@@ -18,7 +18,7 @@ void add_run_options(CLI::App& app) {
     };
     with_run("words", "with --run, behind --: scenes or a plan, and options of 'tandem run'")
         ->expected(CLI::detail::expected_max_vector_size);
-    with_run("--sessions", "with --run: processes of each program (default: 10)")
+    with_run("--sessions", "with --run: processes of each program (default: 12)")
         ->check(CLI::Range(2, 1000))
         ->option_text("N");
     with_run("--out", "with --run: keep the records in this folder, which must be new or empty")
@@ -38,8 +38,9 @@ Action add_compare(CLI::App& app) {
         "least change of a cell that counts, in percent (default: 1 on GPUs, 3 on processors)")
         ->check(CLI::Range(0.0, 1e6))
         ->option_text("P");
-    add_external_option(app, "--level",
-                        "probability of any false alarm over all cells together (default: 0.05)")
+    add_external_option(
+        app, "--level",
+        "probability of any false alarm over all cells together (default: 0.05, with --run 0.01)")
         ->check(CLI::Range(1e-9, 0.5))
         ->option_text("A");
     add_external_option(app, "--format", "format of the output (default: text)")

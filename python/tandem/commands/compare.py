@@ -7,6 +7,7 @@ import tempfile
 from . import check_packages, print_error, run
 
 FAILED = 3
+LEVEL, LEVEL_OF_RUNS = 0.05, 0.01  # continuous integration compares builds at every change
 
 
 def _parsed(arguments):
@@ -15,15 +16,18 @@ def _parsed(arguments):
     parser.add_argument("new")
     parser.add_argument("words", nargs="*")
     parser.add_argument("--threshold", type=float, help="percent")
-    parser.add_argument("--level", type=float, default=0.05)
+    parser.add_argument("--level", type=float)
     parser.add_argument("--format", default="text", choices=("text", "json", "markdown"))
     parser.add_argument("--commit-old", default="")
     parser.add_argument("--commit-new", default="")
     parser.add_argument("--strict", action="store_true")
     parser.add_argument("--run", action="store_true")
-    parser.add_argument("--sessions", type=int, default=10)
+    parser.add_argument("--sessions", type=int, default=12)
     parser.add_argument("--out")
-    return parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
+    if options.level is None:
+        options.level = LEVEL_OF_RUNS if options.run else LEVEL
+    return options
 
 
 def _form(options):
