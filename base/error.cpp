@@ -33,10 +33,17 @@ std::size_t distance(std::string_view a, std::string_view b) {
 } // namespace
 
 std::string nearest(std::string_view name, std::span<const std::string> candidates) {
-    const auto best =
-        std::min_element(candidates.begin(), candidates.end(),
-                         [&](const auto& a, const auto& b) { return distance(name, a) < distance(name, b); });
-    return best == candidates.end() || distance(name, *best) > most_edits ? std::string() : *best;
+    const std::string* best = nullptr;
+    auto least = most_edits + 1;
+    for (const auto& candidate : candidates) {
+        if (name.size() >= candidate.size() + least || candidate.size() >= name.size() + least)
+            continue; // saves the distance to very long words
+        const auto edits = distance(name, candidate);
+        if (edits >= least) continue;
+        best = &candidate;
+        least = edits;
+    }
+    return best == nullptr ? std::string() : *best;
 }
 
 std::string unknown(std::string_view what, std::string_view name, std::span<const std::string> candidates) {

@@ -13,6 +13,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <fmt/format.h>
+#include <functional>
+#include <span>
 
 namespace tandem {
 
@@ -46,7 +48,8 @@ constexpr Subcommand subcommands[] = {
 
 using Actions = std::vector<std::pair<CLI::App*, Action>>;
 
-Actions add_commands(CLI::App& app) {
+/// Adds all commands, but the options of those only that are `needed`.
+Actions add_commands(CLI::App& app, const std::function<bool(std::string_view)>& needed) {
     const auto add_version = [](CLI::App& to) {
         return to.set_version_flag("--version", version_line,
                                    "print name, version, commit, compiler and optional parts");
@@ -59,10 +62,18 @@ Actions add_commands(CLI::App& app) {
     Actions actions;
     for (const auto& command : subcommands) {
         auto* subcommand = app.add_subcommand(command.name, command.summary);
+        if (!needed(command.name)) continue;
         actions.emplace_back(subcommand, command.add(*subcommand));
         add_version(*subcommand)->group(""); // hidden: only the help of the program shows it
     }
     return actions;
+}
+
+/// Whether only options of commands that are among the words are needed, which are added several times
+/// faster than all: not by the help of the program, completion, and messages about words before a command.
+bool begins_with_command(std::span<const std::string> words) {
+    return !words.empty() && !asks_for_completion(words)
+           && std::ranges::any_of(subcommands, [&](const auto& each) { return words.front() == each.name; });
 }
 
 } // namespace
@@ -71,8 +82,11 @@ Action read_command_line(int argc, const char* const* argv) {
     // The actions share ownership of the app, because they read its options later.
     const auto app = std::make_shared<CLI::App>(
         "tandem: measures and checks ways of walking bounding-volume hierarchies in tandem");
-    const auto actions = add_commands(*app);
     const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+    const bool needs_all = !begins_with_command(words);
+    const auto actions = add_commands(*app, [&](std::string_view name) {
+        return needs_all || std::ranges::find(words, name) != words.end();
+    });
     if (asks_for_completion(words)) return [app, words] { return complete(*app, words); };
     const auto print = [](const std::string& text) {
         return [text]() -> int {
