@@ -25,7 +25,7 @@ def tandem(*arguments, driver="driver", nvrtc=FOLDER / "nvrtc/libnvrtc.so", **va
             environment[name] = "/nonexistent"
     if nvrtc:
         environment["TANDEM_NVRTC"] = str(nvrtc)
-    done = subprocess.run([str(PROGRAM), *arguments], capture_output=True, text=True, env=environment)
+    done = subprocess.run([str(PROGRAM), *arguments], stdin=subprocess.DEVNULL, capture_output=True, text=True, env=environment)
     return done.returncode, done.stdout, done.stderr.splitlines()
 
 
@@ -60,6 +60,17 @@ class Faults(unittest.TestCase):
         for without in ({"TANDEM_NVML": "/nonexistent"}, {**options, "STUB_NVML_INIT": 9}):
             self.assertNotIn("now:", tandem("devices", **without)[1])
             self.assertEqual(now(**without), [None, None])
+
+    def test_the_other_build_of_a_comparison_is_no_disturbance(self):
+        """It has a context on the GPU, but does not compute while this one does."""
+        for turns, others in (({}, 2), ({"TANDEM_TURNS": "0,1,7"}, 1)):
+            with tempfile.TemporaryDirectory() as folder:
+                out = pathlib.Path(folder) / "out.jsonl"
+                words = (*RUN, "--device", "cuda:0", "--no-check", "--truth", "none", "--no-count", "--out", str(out))
+                tandem(*words, TANDEM_NVML=NVML, STUB_PROCESSES=3, **turns)
+                record = json.loads(out.read_text().splitlines()[0])
+            self.assertEqual(record["conditions"]["after"]["gpus"][0]["other_processes"], others)
+            self.assertEqual(record["conditions"]["disturbed"][0]["why"].partition("; throttled")[0], f"other processes on the GPU: {others}")
 
     def test_the_source_of_times(self):
         def clocks(**options):
