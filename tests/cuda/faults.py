@@ -63,14 +63,14 @@ class Faults(unittest.TestCase):
 
     def test_the_other_build_of_a_comparison_is_no_disturbance(self):
         """It has a context on the GPU, but does not compute while this one does."""
-        for turns, others in (({}, 2), ({"TANDEM_TURNS": "0,1,7"}, 1)):
+        for turns, processes in (({}, 2), ({"TANDEM_TURNS": "0,1,7"}, 1)):
             with tempfile.TemporaryDirectory() as folder:
                 out = pathlib.Path(folder) / "out.jsonl"
                 words = (*RUN, "--device", "cuda:0", "--no-check", "--truth", "none", "--no-count", "--out", str(out))
                 tandem(*words, TANDEM_NVML=NVML, STUB_PROCESSES=3, **turns)
                 record = json.loads(out.read_text().splitlines()[0])
-            self.assertEqual(record["conditions"]["after"]["gpus"][0]["other_processes"], others)
-            self.assertEqual(record["conditions"]["disturbed"][0]["why"].partition("; throttled")[0], f"other processes on the GPU: {others}")
+            self.assertEqual(record["conditions"]["after"]["gpus"][0]["other_processes"], processes)
+            self.assertEqual(record["conditions"]["disturbed"][0]["why"].partition("; throttled")[0], f"other processes on the GPU: {processes}")
 
     def test_the_source_of_times(self):
         def clocks(**options):

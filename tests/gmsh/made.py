@@ -8,7 +8,7 @@ import sys
 import gmsh
 
 TETRAHEDRA = {4: 1, 11: 2, 29: 3}  # Gmsh's element types, with their orders
-OTHERS = (5, 6, 7, 12, 13, 14, 17, 18, 19)  # hexahedra, prisms and pyramids of orders 1 and 2
+OTHER_CELLS = (5, 6, 7, 12, 13, 14, 17, 18, 19)  # hexahedra, prisms and pyramids of orders 1 and 2
 FORMATS = [  # suffix, options
     *((".msh", {"Mesh.MshFileVersion": version, "Mesh.Binary": binary}) for version, binary in ((1, 0), (2.2, 0), (2.2, 1), (4, 0), (4.1, 0), (4.1, 1))),
     *((".vtk", {"Mesh.Binary": binary}) for binary in (0, 1)),
@@ -83,7 +83,7 @@ def expected(suffix, options):
                 counts["tetrahedra"] += times
                 counts["duplicates"] += times - (0 if is_ghost else len(elements))
                 counts["reduced"] += times if TETRAHEDRA[kind] > 1 else 0
-            elif kind in OTHERS and suffix != ".mesh":
+            elif kind in OTHER_CELLS and suffix != ".mesh":
                 counts["other_cells"] += times
     return counts
 
