@@ -57,6 +57,24 @@ class Convert(Case):
         second.write_text("vertices\n")
         self.bad("is no .tet file", "convert", second, "-o", self.work / "x.vtu")
 
+    def test_t_has_numbered_vertices(self):
+        """With properties and edges, as MeshLib writes them; numbers have gaps."""
+        expected = self.answer(gmsh(self.work / "own.msh", self.points, self.tets))
+        numbers = [7 + 3 * i for i in range(len(self.points))]
+        vertices = "".join(f"Vertex {n} %r %r %r {{rgb=(1 0 0)}}\r\n" % tuple(point) for n, point in zip(numbers, self.points))
+        tets = "".join(f"Tet {i} %d %d %d %d{{group=1}}\n" % tuple(numbers[v] for v in tet) for i, tet in enumerate(self.tets))
+        source = self.work / "mesh.t"
+        source.write_text(vertices + tets + "\nEdge 7 10 {sharp}\n")
+        self.bad("tandem convert", "run", "--mesh", source)
+        self.assertEqual(self.answer(self.converted(source)), expected)
+        last = len(vertices.splitlines()) + 1
+        for wrong, message in (("Tet 0 7 10 13 14\n", f":{last}: there is no vertex 14 above"), ("Tet 0 7 10 13\n", f":{last}: is no line"),
+                               ("Tet 0 7 10 13 16 19\n", f":{last}: is no line"), ("Vertex 7 0 0 0\n", f":{last}: is no line"),
+                               ("Vertex 8 0 0\n", f":{last}: is no line"), ("Vertex 8 0 0 x\n", f":{last}: is no line"), ("Edge 7 10\n", "no tetrahedra")):
+            with self.subTest(wrong):
+                source.write_text(vertices + wrong)
+                self.bad(message, "convert", source, "-o", self.work / "x.vtu")
+
     def test_bad_files_and_outputs(self):
         out, source = self.work / "out.vtu", self.work / "mesh.inp"
         meshio.Mesh(self.points, [("tetra", self.tets)]).write(source)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tandem convert: reads a mesh by meshio, or a .tet file, and writes it as .vtu, which tandem reads. Cells of every kind are kept, and data are not."""
+"""tandem convert: reads a mesh by meshio, or a .tet or .t file, and writes it as .vtu, which tandem reads. Cells of every kind are kept, and data are not."""
 import contextlib
 import io
 import os
@@ -43,6 +43,35 @@ def _tet(path):
     return positions, corners
 
 
+def _t(path):
+    """Points and tetrahedra of a .t file, of MeshLib and of the simulator Gaia: lines "Vertex N x y z" and "Tet N V V V V", in which V are numbers
+    N of vertices above. Properties in braces, and other lines, are left out."""
+    rows, positions, corners = {}, [], []
+    try:
+        with open(path, encoding="utf-8", errors="replace") as file:
+            for line, text in enumerate(file, 1):
+                kind, *words = text.partition("{")[0].split() or [""]
+                if kind == "Vertex":
+                    number, x, y, z = words
+                    if rows.setdefault(int(number), len(positions)) != len(positions):
+                        raise ValueError(f"vertex {number} is there twice")
+                    positions.append([float(x), float(y), float(z)])
+                elif kind == "Tet":
+                    _, *numbers = words
+                    a, b, c, d = (rows[int(number)] for number in numbers)
+                    corners.append([a, b, c, d])
+    except OSError as problem:
+        raise BadUse(f"{path}: cannot be read ({problem.strerror}); check the file") from None
+    except KeyError as problem:
+        raise BadUse(f"{path}:{line}: there is no vertex {problem.args[0]} above; export the file again") from None
+    except ValueError:
+        raise BadUse(f"{path}:{line}: is no line 'Vertex N x y z' or 'Tet N V V V V' with a new N; export the file again") from None
+    return positions, corners
+
+
+OWN = {".tet": _tet, ".t": _t}  # readers by suffix, of formats that meshio does not have
+
+
 def _by_meshio(path):
     import meshio
     errors = io.StringIO()
@@ -58,8 +87,9 @@ def _by_meshio(path):
 
 def _read(path):
     import meshio
-    if path.lower().endswith(".tet"):
-        points, tetrahedra = _tet(path)
+    reader = OWN.get(os.path.splitext(path)[1].lower())
+    if reader:
+        points, tetrahedra = reader(path)
         return meshio.Mesh(points, [("tetra", tetrahedra)])
     given = _by_meshio(path)
     return meshio.Mesh(given.points, given.cells)
