@@ -10,8 +10,6 @@ from . import rank_tests
 from .resampling import Ratio, student_quantile
 
 CONFIDENCE = 0.95
-
-
 DIGITS = 14  # of logarithms behind the point; the sums in bisections have errors of about 1e-15
 
 

@@ -162,6 +162,8 @@ class Turns:
                 break
             process = self._started(side, turn)
             signals.processes.append(process)
+            if signals.asked:  # while it was started
+                process.end(signal.SIGTERM)
             if process.asks():
                 waiting.append((side, process))
             else:
