@@ -19,19 +19,27 @@ double quantile(const std::vector<double>& sorted, double fraction) {
 
 namespace {
 
-/// Ascending medians of resamples of the same size, drawn with replacement. Every machine computes the same
-/// interval: the seed is fixed, and the standard specifies the generator's exact output, unlike that of the
-/// library's distributions.
-std::vector<double> bootstrap_medians(const std::vector<double>& samples) {
+/// Ascending medians of resamples of the same size, drawn with replacement from ascending samples. Every
+/// machine computes the same interval: the seed is fixed, and the standard specifies the generator's exact
+/// output, unlike that of the library's distributions. A resample is how often each sample was drawn, so that
+/// none is sorted.
+std::vector<double> bootstrap_medians(const std::vector<double>& sorted) {
     std::mt19937_64 random(20180606);
     std::vector<double> medians(1000);
-    std::vector<double> drawn(samples.size());
+    std::vector<std::uint32_t> drawn(sorted.size());
+    const auto middle = (sorted.size() - 1) / 2; // the lower one of two
     for (auto& median : medians) {
-        for (auto& value : drawn) value = samples[random() % samples.size()];
-        std::sort(drawn.begin(), drawn.end());
-        median = quantile(drawn, 0.5);
+        std::ranges::fill(drawn, 0U);
+        for (std::size_t i = 0; i < sorted.size(); ++i) ++drawn[random() % sorted.size()];
+        std::size_t below = 0;
+        std::size_t values = drawn[0]; // of the resample, up to sorted[below]
+        while (values <= middle) values += drawn[++below];
+        auto above = below;
+        if (sorted.size() % 2 == 0 && values == middle + 1)
+            while (drawn[++above] == 0) {}
+        median = sorted[below] + 0.5 * (sorted[above] - sorted[below]);
     }
-    std::sort(medians.begin(), medians.end());
+    std::ranges::sort(medians);
     return medians;
 }
 
