@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """conformance_page.py PROGRAM SOURCE: scripts/conformance on device host, with this program, with one whose answers are
-wrong, one that finds no pairs, and one that fails."""
+wrong, one that finds no pairs, one that fails, and one that a driver ends."""
 import json
 import subprocess
 import sys
@@ -11,12 +11,17 @@ from program import PROGRAM, SOURCE, Case
 
 # Runs the program, then edits the file of records.
 WRAPPER = """#!/usr/bin/python3
-import pathlib, re, subprocess, sys
+import os, pathlib, re, signal, subprocess, sys
 done = subprocess.run([{program!r}, *sys.argv[1:]])
 if sys.argv[1] == "check":
+    out = pathlib.Path(sys.argv[sys.argv.index("--out") + 1])
+    if {crash}:
+        if "leaf_query" in sys.argv[sys.argv.index("--algorithm") + 1]:
+            out.unlink()
+            os.kill(os.getpid(), signal.SIGSEGV)
+        sys.exit(done.returncode)
     if {end}:
         sys.exit("tandem: no memory")
-    out = pathlib.Path(sys.argv[sys.argv.index("--out") + 1])
     text = out.read_text()
     if {empty}:
         out.write_text(re.sub('"count":[0-9]+', '"count":0', text))
@@ -34,9 +39,9 @@ class ConformancePage(Case):
                                "-o", page, *more], capture_output=True, text=True, check=False)
         return done.returncode, done.stdout, done.stderr, page.read_text() if page.exists() else ""
 
-    def other(self, end=False, empty=False):
-        path = self.work / f"other{end}{empty}"
-        path.write_text(WRAPPER.format(program=str(PROGRAM), end=end, empty=empty))
+    def other(self, end=False, empty=False, crash=False):
+        path = self.work / f"other{end}{empty}{crash}"
+        path.write_text(WRAPPER.format(program=str(PROGRAM), end=end, empty=empty, crash=crash))
         path.chmod(0o755)
         return path
 
@@ -56,6 +61,13 @@ class ConformancePage(Case):
         code, text, _, page = self.conformance(self.other(end=True))
         self.assertEqual(code, 1, text)
         self.assertIn("- k = 8, float: tandem: no memory", page)
+
+    def test_a_driver_that_ends_the_process(self):
+        """The cells of the other algorithms are on the page."""
+        code, text, errors, page = self.conformance(self.other(crash=True), "--algorithm", "tiled,leaf_query")
+        self.assertEqual((code, errors), (1, ""), text)
+        self.assertIn("- k = 8, float: leaf_query: the driver ended the process (SIGSEGV)", page)
+        self.assertIn("2 of 2 cells are right.", page)
 
     def test_an_empty_answer_shows_nothing(self):
         code, text, errors, page = self.conformance(self.other(empty=True))
