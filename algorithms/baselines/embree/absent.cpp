@@ -7,9 +7,8 @@
 namespace tandem {
 
 std::string_view embree_absence() {
-    return "this program was built without Embree 3; install Debian's libembree-dev (scripts/setup does), "
-           "then "
-           "configure and build again";
+    return "this program was built without Embree; install Debian's libembree-dev (scripts/setup does), "
+           "then configure and build again";
 }
 
 AlgorithmStages embree_stages(const BuildContext&) {

@@ -4,7 +4,11 @@
 #include "algorithms/hierarchy/tile_trees.h"
 #include "algorithms/stages.h"
 
+#if __has_include(<embree4/rtcore.h>) // the order in which CMake looks for them
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 #include <limits>
 #include <memory>
 #include <mutex>
