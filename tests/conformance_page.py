@@ -48,26 +48,27 @@ class ConformancePage(Case):
     def test_right(self):
         code, text, errors, page = self.conformance(PROGRAM)
         self.assertEqual((code, errors), (0, ""), text)
-        self.assertIn("| tiled | resident | right | right |", page)
-        self.assertIn("2 of 2 cells are right.", page)
+        self.assertIn("Presets: tiled (resident).", page)
+        self.assertNotIn("## host", page)
+        self.assertRegex(page, r"\| host [^|]* \| float: k = 8; double: k = 8 \| 2 \| 2 \|")
 
     def test_wrong(self):
         code, text, errors, page = self.conformance(self.other())
         self.assertEqual((code, errors), (1, ""), text)
         self.assertIn("| tiled | resident | 7 missing | 7 missing |", page)
-        self.assertIn("0 of 2 cells are right.", page)
+        self.assertRegex(page, r"\| host [^|]* \| float: k = 8; double: k = 8 \| 2 \| 0 \|")
 
     def test_failing(self):
         code, text, _, page = self.conformance(self.other(end=True))
         self.assertEqual(code, 1, text)
-        self.assertIn("- k = 8, float: tandem: no memory", page)
+        self.assertIn("- k = 8, float; k = 8, double: tandem: no memory", page)
 
     def test_a_driver_that_ends_the_process(self):
         """The cells of the other algorithms are on the page."""
         code, text, errors, page = self.conformance(self.other(crash=True), "--algorithm", "tiled,leaf_query")
         self.assertEqual((code, errors), (1, ""), text)
-        self.assertIn("- k = 8, float: leaf_query: the driver ended the process (SIGSEGV)", page)
-        self.assertIn("2 of 2 cells are right.", page)
+        self.assertIn("- k = 8, float; k = 8, double: leaf_query: the driver ended the process (SIGSEGV)", page)
+        self.assertRegex(page, r"\| host [^|]* \| float: k = 8; double: k = 8 \| 2 \| 2 \|")
 
     def test_an_empty_answer_shows_nothing(self):
         code, text, errors, page = self.conformance(self.other(empty=True))
@@ -88,7 +89,7 @@ class ConformancePage(Case):
         code, _, _, page = self.conformance(PROGRAM, "--keep", kept)
         self.assertEqual(code, 0)
         self.assertIn("2 cells were right on two devices or more; their digests are equal in 2.", page)
-        self.assertIn("## other device", page)
+        self.assertIn("| other device | float: k = 8; double: k = 8 | 2 | 2 |", page)
         both["results"]["other device"] = {title: {**column, "digests": {"tiled resident": "{}"}} for title, column in first.items()}
         kept.write_text(json.dumps(both))
         code, text, _, page = self.conformance(PROGRAM, "--keep", kept)
