@@ -36,17 +36,19 @@ ChunkedWalker::ChunkedWalker(const ChunkTrees& trees, const BuildContext& contex
 
 void ChunkedWalker::do_compile(const WalkBuild& build) {
     auto defines = trees_.defines(shape_.group_size);
-    build.add_to(defines);
     define(defines, chunked_parameters::seed_threshold, threshold_);
     define(defines, chunked_parameters::seed_target, target_);
-    define(defines, chunked_parameters::root_test, root_test_);
+    auto of_seeds = defines;
+    define(of_seeds, chunked_parameters::root_test, root_test_);
+    const auto& seeds = kernel_source("algorithms/chunked/seeds.cl");
+    count_kernel_ = device().compile(seeds, "count_seeds", of_seeds);
+    scan_kernel_ = device().compile(seeds, "scan_seeds", of_seeds);
+    build.add_to(defines);
     define(defines, chunked_parameters::descent,
            larger_ ? chunked_parameters::Descent::larger : chunked_parameters::Descent::both);
-    const auto& source = kernel_source("algorithms/chunked/chunked.cl");
-    count_kernel_ = device().compile(source, "count_seeds", defines);
-    scan_kernel_ = device().compile(source, "scan_seeds", defines);
     const bool in_groups = schedule_ == chunked_parameters::Schedule::group;
-    traverse_kernel_ = device().compile(source, in_groups ? "traverse_in_groups" : "traverse", defines);
+    traverse_kernel_ = device().compile(kernel_source("algorithms/chunked/chunked.cl"),
+                                        in_groups ? "traverse_in_groups" : "traverse", defines);
 }
 
 std::uint32_t ChunkedWalker::seed_level(std::uint32_t a, std::uint32_t b, std::uint64_t pair_count) const {

@@ -13,7 +13,7 @@ namespace tandem {
 
 namespace {
 
-constexpr std::uint64_t item_words = 3;
+constexpr std::uint64_t item_words = ITEM_WORDS;
 constexpr std::uint64_t least_capacity = 2; ///< minimum for a queue; one of its items stays free
 constexpr auto too_many_items =
     "gproximity: its queues have 2^31 node pairs or more, which it cannot count; set batch, or use chunked";
@@ -61,17 +61,21 @@ QueueWalker::QueueWalker(const ChunkTrees& trees, const BuildContext& context)
 }
 
 void QueueWalker::do_compile(const WalkBuild& build) {
-    const auto& source = kernel_source("algorithms/gproximity/gproximity.cl");
     auto defines = trees_.defines(shape_.group_size);
     build.add_to(defines);
     add_defines(sizes_, defines);
+    traverse_ =
+        device().compile(kernel_source("algorithms/gproximity/gproximity.cl"), "traverse_queues", defines);
+    const auto compile = [&](std::string_view entry, std::uint32_t group_size) {
+        Defines own{{"PRECISION", "32"}}; // these kernels have no reals
+        define(own, parameters::group_size, group_size);
+        return device().compile(kernel_source("algorithms/gproximity/balance.cl"), entry, own);
+    };
     const bool serial = sizes_.balance == BalanceMethod::serial;
-    scatter_ = device().compile(source, "scatter_roots", defines);
-    traverse_ = device().compile(source, "traverse_queues", defines);
-    if (!serial) move_ = device().compile(source, "move_balance", defines);
-    define(defines, parameters::group_size, sizes_.balance_group_size);
-    plan_ = device().compile(source, "plan_balance", defines);
-    if (serial) move_ = device().compile(source, "move_balance_serially", defines);
+    scatter_ = compile("scatter_roots", shape_.group_size);
+    plan_ = compile("plan_balance", sizes_.balance_group_size);
+    move_ = serial ? compile("move_balance_serially", sizes_.balance_group_size)
+                   : compile("move_balance", shape_.group_size);
 }
 
 std::uint64_t QueueWalker::queue_bytes() const {

@@ -23,14 +23,8 @@ protected:
         auto& on = device(GetParam());
         const StageScope scope(on, Stage::balance);
         const auto queues = static_cast<std::uint32_t>(counts.size());
-        const auto kernel = on.compile(kernel_source("algorithms/gproximity/gproximity.cl"), "plan_balance",
-                                       {{"K", "8"},
-                                        {"AXES", "0"},
-                                        {"PRECISION", "32"},
-                                        {"GROUP_SIZE", std::to_string(group_size)},
-                                        {"ROUNDING", "1"},
-                                        {"OUTPUT", "0"},
-                                        {"COUNT_WORK", "0"}});
+        const auto kernel = on.compile(kernel_source("algorithms/gproximity/balance.cl"), "plan_balance",
+                                       {{"PRECISION", "32"}, {"GROUP_SIZE", std::to_string(group_size)}});
         const auto counts_on = on.allocate(queues * 4, "counts");
         const auto starts_on = on.allocate((queues + 1) * 4, "starts");
         const auto totals_on = on.allocate(8, "totals");
