@@ -74,7 +74,7 @@ fi
 [ -s "$work"/prefix/share/doc/tandem/NOTICE.md ]
 # A component that this build has not is refused by name.
 mkdir "$work/component" && printf 'cmake_minimum_required(VERSION 3.25)\nproject(c LANGUAGES CXX)\nfind_package(tandem REQUIRED COMPONENTS vulkan)\n' >"$work/component/CMakeLists.txt"
-if cmake -S "$work/component" -B "$work/component/build" -DCMAKE_PREFIX_PATH="$work/prefix;$(found CMAKE_PREFIX_PATH)" "${given[@]}" >"$work/log" 2>&1; then
+if cmake -S "$work/component" -B "$work/component/build" -G Ninja -DCMAKE_PREFIX_PATH="$work/prefix;$(found CMAKE_PREFIX_PATH)" "${given[@]}" >"$work/log" 2>&1; then
   echo "component vulkan was found" >&2; exit 1
 fi
 grep -q 'this tandem has no component vulkan' "$work/log" || { cat "$work/log" >&2; exit 1; }
