@@ -7,8 +7,8 @@ program=$(readlink -f "$1")
 driver=$(find /usr/lib -name 'liboclgrind-rt-icd.so*' 2>/dev/null | sort | head -n 1)
 if [ -z "$driver" ]; then
   echo "oclgrind: its driver liboclgrind-rt-icd.so is not installed" >&2
-  if apt-cache policy oclgrind 2>/dev/null | grep -q 'Candidate: [^(]'; then exit 1; fi
-  command -v apt-cache >/dev/null && apt-cache policy g++ | grep -q 'Candidate: [^(]' || exit 1 # packages are not known
+  packaged() { [[ $(LC_ALL=C apt-cache policy "$1" 2>/dev/null) =~ Candidate:\ [^\(] ]]; }
+  if packaged oclgrind || ! packaged g++; then exit 1; fi # without g++ the packages are not known
   exit 77
 fi
 work=$(mktemp -d)
