@@ -15,7 +15,6 @@
     ALGORITHM(chunked) \
     ALGORITHM(gproximity) \
     ALGORITHM(tiled) \
-    ALGORITHM(listed) \
     ALGORITHM(leaf_query)
 #define TANDEM_BASELINES(ALGORITHM) \
     ALGORITHM(embree) \

@@ -160,7 +160,6 @@ FrameResult ResidentSession::run_parts(const Input& input) {
     if (has_received_)
         throw OutOfMemory(fmt::format("{}: a frame in batches needs all vertices in the host's memory",
                                       pipeline_.device.info().id));
-    pipeline_.stages.walker->save_memory();
     if (input.device != nullptr) pipeline_.status.begin(0);
     refresh(input);
     if (input.device != nullptr) {

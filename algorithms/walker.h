@@ -63,8 +63,6 @@ public:
     bool grow(const Status& status) { return do_grow(status); }
     /// Clears state that is carried from walk to walk; a walker without state has none.
     void reset() { do_reset(); }
-    /// Frees memory that it can do without, because a frame did not fit. Throws OutOfMemory.
-    void save_memory() { do_save_memory(); }
     /// Adds the counts of a counting walk, by the names of Traversal::counters().
     void report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const {
         do_report(status, work);
@@ -75,7 +73,6 @@ private:
     virtual void do_launch(const WalkTask& task) = 0;
     virtual bool do_grow(const Status& status) = 0;
     virtual void do_reset() {}
-    virtual void do_save_memory() {}
     virtual void do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const = 0;
 };
 

@@ -57,10 +57,8 @@ def named(text, geometry):
 
 
 def choices(text):
-    """Defines, besides the geometry, for which a text is compiled separately: SLABS determines sizes of arrays, unless the text
-    has WHOLE_LEAVES."""
-    depends = re.search(r"^#if SLABS\b", text, re.M) and not re.search(r"^#define WHOLE_LEAVES\b", text, re.M)
-    return [["SLABS=0"], ["SLABS=1"]] if depends else [[]]
+    """Defines, besides the geometry, for which a text is compiled separately: SLABS determines sizes of arrays."""
+    return [["SLABS=0"], ["SLABS=1"]] if re.search(r"^#if SLABS\b", text, re.M) else [[]]
 
 
 def has_lanes(text):
@@ -68,18 +66,16 @@ def has_lanes(text):
     return re.search(r"^(?!#define|//).*\bFOR_LANES\b", text, re.M) is not None
 
 
-def is_of_higher_levels(name, defines, higher_k):
-    """Whether levels above the lowest contain this variant: only those that are measured most. The lowest level has all of them.
-    On processors only algorithm listed has SLABS=1 by itself, and only in the refit."""
+def is_of_higher_levels(defines, higher_k):
+    """Whether levels above the lowest contain this variant: only those that are measured most. The lowest level has all of them."""
     k = [pair[2:] for pair in defines if pair.startswith("K=")]
-    rare = {"PRECISION=64"} if name.endswith("/refit_tiles.cl") else {"PRECISION=64", "SLABS=1"}
-    return not rare & set(defines) and (not higher_k or set(k) <= set(higher_k))
+    return not {"PRECISION=64", "SLABS=1"} & set(defines) and (not higher_k or set(k) <= set(higher_k))
 
 
 def host_variant(kernels, geometry, geometries, identifier, level, is_wanted):
     """Code of the kernels of one geometry. A kernel that names only some of its defines is in the first geometry with these values.
     `level`: x86-64-v2, -v3 or -v4, for which the file is compiled; 0: any processor. `is_wanted`: whether the level has a variant
-    of a kernel file with these defines."""
+    with these defines."""
     out, rows = [], []
     variants = [(name, text, choice) for name, text in kernels.items() for choice in choices(text)]
     for index, (name, text, choice) in enumerate(variants):
@@ -87,7 +83,7 @@ def host_variant(kernels, geometry, geometries, identifier, level, is_wanted):
         if geometry != next(g for g in geometries if named(text, g) == own):
             continue
         own = own + choice
-        if not is_wanted(name, own):
+        if not is_wanted(own):
             continue
         fixed = dict(pair.split("=") for pair in own)
         defaults = {key: value for key, value in DEFAULT.findall(text) if key not in fixed and key != "GROUP_SIZE"}
@@ -151,7 +147,7 @@ def main():
                  for geometry in arguments.geometries]
         has_all = level in (0, min(arguments.levels, default=0))
         variants = [host_variant(these, geometry, arguments.geometries, name, level,
-                                 lambda name, own, has_all=has_all: has_all or is_of_higher_levels(name, own, arguments.higher_k))
+                                 lambda own, has_all=has_all: has_all or is_of_higher_levels(own, arguments.higher_k))
                     for geometry, name in zip(arguments.geometries, names)]
         for part, first in enumerate(range(0, len(variants), arguments.each)):
             these_variants = variants[first:first + arguments.each]

@@ -35,7 +35,7 @@ class Groups(Case):
     def test_every_algorithm_is_right_in_groups_of_a_wave(self):
         algorithms = [one["name"] for one in json.loads(tandem("algorithms", "--json")[1])
                       if not one["baseline"] and any(setting["name"] == "group_size" for setting in one["parameters"])]
-        self.assertLessEqual({"chunked", "gproximity", "tiled", "listed", "leaf_query"}, set(algorithms))
+        self.assertLessEqual({"chunked", "gproximity", "tiled", "leaf_query"}, set(algorithms))
         for precision in ("float", "double") if LONG else ("float",):
             out = self.work / f"{precision}.jsonl"
             status, text, errors = tandem("check", SCENE, "--device", "opencl:0", "--algorithm", ",".join(algorithms), "--set", "group_size=64", "--set", "k=8",

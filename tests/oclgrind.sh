@@ -82,7 +82,6 @@ check --algorithm leaf_query
 check "${chunked[@]}" --preset grouped --set seed_threshold=1
 long "${chunked[@]}" --preset paper --set seed_threshold=1
 long --algorithm leaf_query --set tree=scene
-long --algorithm listed
 long "${queues[@]/balance_group_size=8/balance_group_size=64}" --set local_queue=12 --set balance=parallel
 "$program" devices | grep Oclgrind >/dev/null || { echo "these runs were not on Oclgrind" >&2; exit 1; }
 least=8

@@ -303,6 +303,29 @@ class Records(Case):
         self.assertEqual(len(errors), 1)
         self.assertIn(f"{out}:{len(out.read_text().splitlines())}: the last line has no end", errors[0])
 
+    def test_records_of_a_removed_algorithm_are_read(self):
+        """Its name, settings, counters and kernels are words that the program no longer has."""
+        out, former = self.work / "tiled.jsonl", self.work / "former.jsonl"
+        run = ("run", "--mesh", self.good, "--mesh", self.good, "--algorithm", "tiled", "--device", "host", "--repeat", 2, "--out")
+        self.assertEqual(tandem(*run, out)[0], 0)
+        record, = cells_of(out.read_text())
+        record["key"] = record["key"].replace("tiled", "former") + ",pad=60"
+        record.update(algorithm="former", settings={**record["settings"], "pad": "60"})
+        record["work"]["counters"]["open_pairs"] = 3
+        record["kernels"][0].update(entry="emit_former", defines={"PAD": "60"})
+        former.write_text(json.dumps(record) + "\n")
+        self.assertEqual(self.records(former), [record])
+        status, table, errors = tandem("export", former, "--csv")
+        self.assertEqual((status, errors), (0, []), table)
+        row, = csv.DictReader(table.splitlines())
+        self.assertEqual((row["algorithm"], row["set_pad"]), ("former", "60"))
+        status, text, errors = tandem("compare", former, former)
+        self.assertEqual((status, errors), (0, []), text)
+        self.assertEqual(tandem("report", former, "-o", self.work / "former.html")[0], 0)
+        status, text, errors = tandem(*run, former, "--resume")
+        self.assertEqual((status, errors), (0, []), text)
+        self.assertEqual([line["algorithm"] for line in self.records(former)], ["former", "tiled"])
+
     def test_files_that_are_not_records_give_no_table(self):
         other, empty = self.work / "other.jsonl", self.work / "empty.jsonl"
         other.write_text('{"schema":4}\n')

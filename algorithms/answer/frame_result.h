@@ -86,7 +86,7 @@ struct FrameCounts {
     std::uint64_t undecided_by_filter = 0; ///< by the certified filter (decision=recheck, exact)
     std::uint64_t undecided_by_double = 0; ///< by double precision (decision=recheck, fp64, exact)
     std::uint64_t retries = 0;             ///< repetitions of a walk because a buffer was too small
-    std::uint64_t rebuilds = 0;            ///< walks because no kept list was valid (listed), or built trees
+    std::uint64_t rebuilds = 0;            ///< trees built because none was kept (leaf_query, tree=scene)
     std::uint64_t batches = 0;             ///< number of batches; 1: the frame fitted into memory
 
     /// Adds every count of `other`.

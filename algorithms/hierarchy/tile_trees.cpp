@@ -194,9 +194,7 @@ void TileTrees::plan_refit() {
     }
 }
 
-void TileTrees::do_take(const Subdomain& subdomain) {
-    subdomain_ = subdomain;
-    ++changes_;
+void TileTrees::do_take(const Subdomain&) {
     steps_.clear();
     plan_refit();
     fresh_ = true;
@@ -235,7 +233,6 @@ void TileTrees::mask_skipped(const Frame& frame) {
     upload_taking_part(frame);
     skipped_ = frame.skipped;
     fresh_ = true;
-    ++changes_;
 }
 
 /// A refit that stores no leaves reads the vertices of touched tiles twice, which pays if these are few. They
@@ -249,7 +246,6 @@ bool TileTrees::stores_leaves() const {
 
 /// Runs bottom up, two levels per launch.
 void TileTrees::do_refit(const Frame& frame, bool all) {
-    ++refits_;
     mask_skipped(frame);
     const bool stores = stores_leaves();
     all |= fresh_ || (stores && !stored_);

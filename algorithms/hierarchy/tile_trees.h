@@ -42,17 +42,8 @@ public:
     std::uint32_t begins(std::uint32_t level) const;
     /// The first tile of level 1, which equals the number of tiles of level 0.
     std::uint32_t first_upper() const { return level_first_.size() > 1 ? level_first_[1] : tile_count_; }
-    /// Tiles of all levels.
-    std::uint32_t tile_count() const { return tile_count_; }
     /// Defines for kernels that include tiles.clh.
     Defines defines(std::uint32_t group_size) const;
-
-    /// The number of refits so far.
-    std::uint64_t refits() const { return refits_; }
-    /// How often the tetrahedra that frames skip, or the subdomain, have changed so far.
-    std::uint64_t changes() const { return changes_; }
-    /// The last subdomain; empty: all bodies.
-    const std::optional<Subdomain>& subdomain() const { return subdomain_; }
 
     /// Pairs of tiles of level 0 that the last frame tested. With few of them and Slabs::touched, the next
     /// refit leaves the bounds of tetrahedra to bound_touched().
@@ -89,7 +80,7 @@ private:
     };
 
     void do_refit(const Frame& frame, bool all) override;
-    void do_take(const Subdomain& subdomain) override;
+    void do_take(const Subdomain&) override;
     const Buffer& do_volumes() const override { return volumes_; }
     const Buffer& do_nodes() const override { return leaves_; }
     std::size_t do_bytes() const override;
@@ -129,8 +120,6 @@ private:
     std::uint32_t tile_count_ = 0;
     std::vector<Step> steps_;
     std::uint64_t expected_pairs_ = most_pairs_unknown;
-    std::uint64_t refits_ = 0, changes_ = 0;
-    std::optional<Subdomain> subdomain_;
     bool few_units_ = false;                          ///< whether leaves are a step of their own
     bool stored_ = true;                              ///< whether the last refit stored all leaves
     bool fresh_ = true;                               ///< whether the next refit includes fixed bodies

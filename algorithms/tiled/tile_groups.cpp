@@ -13,7 +13,7 @@ namespace tandem {
 namespace {
 
 /// Bytes of local memory of a work-group of `teams` teams of lanes, in the kernel that needs most (tiled.cl,
-/// listed.cl, refit_tiles.cl).
+/// refit_tiles.cl).
 std::uint64_t local_bytes(const Settings& settings, Slabs slabs, std::uint64_t teams, bool is_warp) {
     constexpr std::uint64_t lanes = TANDEM_LANES, words = 4, points = 4 * lanes * 3;
     const auto k = static_cast<std::uint64_t>(settings[parameters::k]);
@@ -63,10 +63,11 @@ void fit_tiles(Settings& settings, const DeviceInfo& info) {
     if (settings[parameters::group_size] == 0 && !info.is_gpu) settings.set(parameters::group_size(1));
 }
 
-void check_tile_memory(const Settings& settings, Slabs slabs, const DeviceInfo& info, std::string_view what) {
+void check_tile_memory(const Settings& settings, Slabs slabs, const DeviceInfo& info) {
     const auto group_size = static_cast<std::uint32_t>(settings[parameters::group_size]);
     const auto smallest = fitting_shape(settings, slabs, info, {group_size, 1}).group_size;
-    check_local_memory(settings, info, local_bytes_of_group(settings, slabs, smallest), what, "lower it");
+    check_local_memory(settings, info, local_bytes_of_group(settings, slabs, smallest), "algorithm tiled",
+                       "lower it");
 }
 
 double leaf_tile_pair_bytes(const FrameFacts& facts) {

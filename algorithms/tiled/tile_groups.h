@@ -17,9 +17,8 @@ LaunchShape fitting_shape(const Settings& settings, Slabs slabs, const DeviceInf
 /// Resolves most_seeds and group_size where they are 0 and their values depend on the device.
 void fit_tiles(Settings& settings, const DeviceInfo& info);
 
-/// Throws InputError if the smallest groups need more local memory than the device has. `what`: as
-/// "algorithm tiled".
-void check_tile_memory(const Settings& settings, Slabs slabs, const DeviceInfo& info, std::string_view what);
+/// Throws InputError if the smallest groups need more local memory than the device has.
+void check_tile_memory(const Settings& settings, Slabs slabs, const DeviceInfo& info);
 
 /// The cost of walk_upper_tiles.
 KernelCost upper_tiles_cost(double k);

@@ -54,7 +54,8 @@ Grid TileLevels::grid(std::uint32_t level) {
     return {groups.groups_for(wanted, static_cast<std::uint32_t>(most)), shape_.group_size};
 }
 
-void TileLevels::expect(const Status& status, std::uint64_t body_pairs) {
+void TileLevels::expect(const Status& status) {
+    const auto body_pairs = status.counter(STATUS_BODY_PAIRS);
     for (std::uint32_t level = 0; level < trees_.walked_levels(); ++level) {
         const bool is_found = level + 1 < trees_.walked_levels();
         const std::uint64_t begins = trees_.begins(level);
@@ -74,24 +75,24 @@ bool TileLevels::grow(const Status& status) {
     return again;
 }
 
-void TileLevels::report(const Status& status, std::uint64_t body_pairs,
-                        std::map<std::string_view, std::uint64_t>& work) const {
+void TileLevels::report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const {
     work[counters::bvtt_nodes.name] += status.counter(STATUS_BVTT_NODES);
     work[counters::seeds.name] += status.counter(STATUS_SEEDS);
     work[tiled_counters::upper_tests.name] += status.counter(STATUS_UPPER_TESTS);
     const std::uint64_t begins = trees_.begins(0);
     work[tiled_counters::leaf_tile_pairs.name] +=
-        begins * begins * body_pairs + (trees_.walked_levels() > 1 ? status.counter(STATUS_TILE_PAIRS) : 0);
+        begins * begins * status.counter(STATUS_BODY_PAIRS)
+        + (trees_.walked_levels() > 1 ? status.counter(STATUS_TILE_PAIRS) : 0);
 }
 
-void TileLevels::launch_level(const Input& input, std::uint32_t level) {
-    const std::array<Argument, 16> arguments{input.uppers,
+void TileLevels::launch_level(const WalkTask& task, std::uint32_t level) {
+    const std::array<Argument, 16> arguments{trees_.uppers(),
                                              trees_.first_upper(),
-                                             input.roots,
+                                             trees_.roots(),
                                              trees_.tile_table(),
                                              trees_.tops(),
-                                             input.body_pairs,
-                                             input.pair_capacity,
+                                             task.body_pairs,
+                                             task.pair_capacity,
                                              trees_.begins(level),
                                              level,
                                              list(level).buffer(),
@@ -100,12 +101,8 @@ void TileLevels::launch_level(const Input& input, std::uint32_t level) {
                                              list(level - 1).capacity(),
                                              trees_.marks(),
                                              std::uint32_t{level == 1 && trees_.has_touched() ? 1u : 0u},
-                                             input.status};
+                                             task.status.buffer()};
     trees_.bodies().device().launch(kernel_, grid(level), arguments);
-}
-
-void TileLevels::launch(const Input& input) {
-    for (auto level = trees_.walked_levels(); --level > 0;) launch_level(input, level);
 }
 
 void TileLevels::check_start_pairs(std::size_t body_pairs) const {
@@ -113,6 +110,11 @@ void TileLevels::check_start_pairs(std::size_t body_pairs) const {
     if (begins > 1 && begins * begins * body_pairs > 0xffffffffu) // turns.clh counts them in a word
         throw InputError(
             "body pairs given more than once make more than 2^32 initial pairs of tiles; lower most_seeds");
+}
+
+void TileLevels::launch(const WalkTask& task) {
+    check_start_pairs(task.on_host.size());
+    for (auto level = trees_.walked_levels(); --level > 0;) launch_level(task, level);
 }
 
 } // namespace tandem

@@ -19,31 +19,21 @@ public:
     /// `context` must outlive this object. Throws OutOfMemory.
     TileLevels(TileTrees& trees, const BuildContext& context, LaunchShape shape);
 
-    /// Bounds, and the body pairs to begin with, whose number is in `status` (STATUS_BODY_PAIRS).
-    struct Input {
-        const Buffer& uppers; ///< TileTrees::uppers(), or enlarged ones
-        const Buffer& roots;  ///< TileTrees::roots(), or enlarged ones
-        const Buffer& body_pairs;
-        std::uint32_t pair_capacity; ///< of `body_pairs`
-        const Buffer& status;        ///< gets the numbers of pairs by level (tile_pairs.clh)
-    };
-
     /// Compiles the kernel with these defines, or reuses a compiled one.
     void compile(const Defines& defines);
     /// Defines of all kernels of the walk.
     Defines defines(const WalkBuild& build) const;
-    /// Enqueues the launches of all levels above 0.
-    void launch(const Input& input);
-    /// Throws InputError if 32 bits cannot number the pairs of tiles that body pairs on the host begin with.
-    void check_start_pairs(std::size_t body_pairs) const;
+    /// Enqueues the launches of all levels above 0. The status gets the numbers of pairs by level
+    /// (tile_pairs.clh). Throws InputError if 32 bits cannot number the pairs of tiles that body pairs on the
+    /// host begin with.
+    void launch(const WalkTask& task);
 
-    /// Sets what a level's grid expects to the counts of the last walk, which had `body_pairs` body pairs.
-    void expect(const Status& status, std::uint64_t body_pairs);
+    /// Sets what a level's grid expects to the counts of the last walk.
+    void expect(const Status& status);
     /// Grows the lists that the last walk overflowed. Returns true if it must run again. Throws OutOfMemory.
     bool grow(const Status& status);
-    /// Adds the counts of a counting walk, which had `body_pairs` body pairs.
-    void report(const Status& status, std::uint64_t body_pairs,
-                std::map<std::string_view, std::uint64_t>& work) const;
+    /// Adds the counts of a counting walk.
+    void report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const;
 
     /// The grid of a level's launch: few groups if the last walk had few pairs.
     Grid grid(std::uint32_t level);
@@ -56,12 +46,12 @@ public:
     std::uint32_t capacity(std::uint32_t level) const {
         return level + 1 < trees_.walked_levels() ? list(level).capacity() : 0;
     }
-    LaunchShape shape() const { return shape_; }
     /// Pairs of tiles of level 0 in the last walk that expect() had.
     std::uint64_t expected_leaf_pairs() const { return *expected_[0].pairs; }
 
 private:
-    void launch_level(const Input& input, std::uint32_t level);
+    void check_start_pairs(std::size_t body_pairs) const;
+    void launch_level(const WalkTask& task, std::uint32_t level);
 
     TileTrees& trees_;
     LaunchShape shape_;

@@ -68,7 +68,7 @@ private:
             && settings[tandem::parameters::slabs] == Slabs::three)
             throw InputError("setting slabs=three makes slabs from the vertices of one frame, and "
                              "motion=linear needs those of two; choose slabs=all");
-        check_tile_memory(settings, settings[tandem::parameters::slabs], info, "algorithm tiled");
+        check_tile_memory(settings, settings[tandem::parameters::slabs], info);
     }
 
     std::vector<KernelCost> do_costs(const Scene& scene, const Settings& settings) const override {

@@ -13,13 +13,13 @@ void TiledWalker::do_compile(const WalkBuild& build) {
 }
 
 bool TiledWalker::do_grow(const Status& status) {
-    levels_.expect(status, status.counter(STATUS_BODY_PAIRS));
+    levels_.expect(status);
     trees_.expect_tile_pairs(levels_.expected_leaf_pairs());
     return levels_.grow(status);
 }
 
 void TiledWalker::do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const {
-    levels_.report(status, status.counter(STATUS_BODY_PAIRS), work);
+    levels_.report(status, work);
 }
 
 void TiledWalker::launch_leaves(const WalkTask& task) {
@@ -52,10 +52,8 @@ void TiledWalker::launch_leaves(const WalkTask& task) {
 }
 
 void TiledWalker::do_launch(const WalkTask& task) {
-    levels_.check_start_pairs(task.on_host.size());
     const StageScope scope(trees_.bodies().device(), Stage::traverse);
-    levels_.launch(
-        {trees_.uppers(), trees_.roots(), task.body_pairs, task.pair_capacity, task.status.buffer()});
+    levels_.launch(task);
     if (trees_.has_touched()) trees_.bound_touched();
     launch_leaves(task);
 }

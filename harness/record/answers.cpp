@@ -93,8 +93,9 @@ Fields<CellRecord> effort_fields() {
          [](auto& r) { return r.m.retries; }},
         {"rebuilds",
          count(),
-         "walks of the last sample without a valid list (algorithm listed) or a kept tree (leaf_query with "
-         "tree=scene), over all frames and devices; 0 for other walks; records from before it have none",
+         "trees that the last sample built because none was kept (leaf_query with tree=scene), over all "
+         "frames and devices; 0 for other walks; records from before it have none, and older ones also count "
+         "lists of pairs that were not kept",
          [](auto& r) { return r.m.samples.empty() ? 0 : r.m.samples.back().rebuilds; },
          {.optional = true}},
         {"batches", nullable(integer_from(0)),

@@ -55,7 +55,7 @@ struct TimedReplay {
     std::vector<std::int64_t> shared_ns = {}; ///< [device] time at work
     std::int64_t longest_ns = 0;              ///< the longest device time of each frame
     std::uint64_t repartitions = 0;           ///< frames before which the bodies were repartitioned
-    std::uint64_t rebuilds = 0;               ///< walks without a valid list or kept tree, on every device
+    std::uint64_t rebuilds = 0;               ///< trees built because none was kept, on every device
 
     std::int64_t total_ns() const;
     /// Adds the work that a frame's result has counted.

@@ -36,8 +36,6 @@ const std::vector<SettingValues> settings_of_single_algorithms{
     {"output", {"pairs", "contacts"}},
     {"slabs", {"three", "all", "touched"}},
     {"tile_pair_capacity", {"1", "65536"}},
-    {"list_capacity", {"1", "65536"}},
-    {"pad", {"60", "100000"}},
     {"most_seeds", {"1", "256", "16384"}},
     {"root_test", {"yes", "no"}},
     {"schedule", {"group", "item"}},
@@ -222,10 +220,9 @@ TEST_P(CoveringArray, Chunked) { cover("chunked", 100, 7); }
 TEST_P(CoveringArray, Gproximity) { cover("gproximity", 200, 4); }
 TEST_P(CoveringArray, Tiled) { cover("tiled", 400, 7); }
 TEST_P(CoveringArray, LeafQuery) { cover("leaf_query", 500, 7); }
-TEST_P(CoveringArray, Listed) { cover("listed", 600, 7); }
 TEST_P(CoveringArray, EveryOther) {
-    const std::set<std::string_view> own{"chunked",          "gproximity", "tiled", "leaf_query",
-                                         "leaf_query_scene", "listed"}; // leaf_query covers both of its trees
+    const std::set<std::string_view> own{"chunked", "gproximity", "tiled", "leaf_query",
+                                         "leaf_query_scene"}; // leaf_query covers both of its trees
     for (const auto* traversal : algorithms())
         if (!own.contains(traversal->name())) cover(traversal->name(), 300, 7);
 }

@@ -213,7 +213,6 @@ TEST(Nvrtc, DefaultFloatKernelsKeepTheirBudget) {
                                : name == "separate_pairs"     ? 96
                                : name == "certify_pairs"      ? 80
                                : name == "traverse_in_groups" ? 96
-                               : name == "list_leaf_tiles"    ? 96
                                : name == "walk_leaf_tiles"    ? 72
                                : name == "walk_upper_tiles"   ? 72
                                                               : 64;
