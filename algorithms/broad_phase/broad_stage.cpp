@@ -4,6 +4,7 @@
 #include "algorithms/broad_phase/filters.h"
 #include "algorithms/broad_phase/tile.clh"
 #include "algorithms/bodies/ball.h"
+#include "algorithms/bodies/self_pairs.h"
 #include "algorithms/parameters/table.h"
 #include "algorithms/sources.h"
 #include "base/error.h"
@@ -22,7 +23,7 @@ std::uint32_t tiles_of(std::uint32_t bodies) { return (bodies + BROAD_TILE - 1) 
 } // namespace
 
 BroadStage::BroadStage(const Bodies& bodies, const Buffer& volumes, LaunchShape shape, SelfPairs self)
-    : bodies_(bodies), volumes_(volumes), has_self_(self != SelfPairs::off) {
+    : bodies_(bodies), volumes_(volumes), self_(self) {
     shape_.group_size = std::min<std::uint32_t>(shape.group_size, BROAD_TILE);
     shape_.groups = shape.groups * (shape.group_size / shape_.group_size);
     const auto count = bodies.count();
@@ -46,10 +47,7 @@ BroadStage::BroadStage(const Bodies& bodies, const Buffer& volumes, LaunchShape 
     filters_ = uploaded_filters(device, bodies.scene());
 }
 
-std::uint64_t BroadStage::most_pairs() const {
-    const std::uint64_t bodies = bodies_.count();
-    return bodies * (bodies - 1) / 2 + (has_self_ ? bodies : 0);
-}
+std::uint64_t BroadStage::most_pairs() const { return most_body_pairs(bodies_.scene(), self_); }
 
 std::vector<Eigen::Vector3d> BroadStage::centres(const Frame& frame) const {
     std::vector<Eigen::Vector3d> centres;

@@ -38,7 +38,7 @@ private:
 
     const Bodies& bodies_;
     Buffer volumes_;
-    bool has_self_; ///< finds pairs of a body with itself
+    SelfPairs self_;
     LaunchShape shape_;
     std::uint32_t count_ = 0;        ///< bodies in the order
     std::uint32_t moving_count_ = 0; ///< moving bodies, which are first in it; every pair has one

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/chunked/chunked_walker.h"
 
+#include "algorithms/bodies/self_pairs.h"
 #include "algorithms/chunked/levels.clh"
 #include "algorithms/sources.h"
 
@@ -25,7 +26,7 @@ ChunkedWalker::ChunkedWalker(const ChunkTrees& trees, const BuildContext& contex
       // Body pairs found on the device have passed the same test.
       root_test_(context.settings[chunked_parameters::root_test]
                  && context.settings[parameters::broad] != Broad::device) {
-    find_top_level();
+    find_top_level(context.settings[parameters::self]);
     const bool hands_down = top_level_ > 0 || context.settings[parameters::residency] == Residency::published;
     const auto seeds =
         first_rows(context.device, context.settings[chunked_parameters::seed_capacity], seed_bytes, 1.0 / 16);
@@ -51,7 +52,7 @@ void ChunkedWalker::do_compile(const WalkBuild& build) {
                                         in_groups ? "traverse_in_groups" : "traverse", defines);
 }
 
-std::uint32_t ChunkedWalker::seed_level(std::uint32_t a, std::uint32_t b, std::uint64_t pair_count) const {
+std::uint32_t ChunkedWalker::wanted_level(std::uint32_t a, std::uint32_t b, std::uint64_t pair_count) const {
     const auto threshold = static_cast<std::uint64_t>(threshold_ != 0 ? threshold_ : target_)
                            / (threshold_ != 0 ? 1 : std::max<std::uint64_t>(pair_count, 1));
     const auto& levels_a = trees_.levels(a);
@@ -62,16 +63,21 @@ std::uint32_t ChunkedWalker::seed_level(std::uint32_t a, std::uint32_t b, std::u
     return level;
 }
 
+std::uint32_t ChunkedWalker::seed_level(std::uint32_t a, std::uint32_t b, std::uint64_t pair_count) const {
+    return std::min(wanted_level(a, b, pair_count), top_level_);
+}
+
 /// The levels that may have seeds depend only on the meshes and the number of bodies. The sequence of
-/// launches is therefore fixed in advance.
-void ChunkedWalker::find_top_level() {
-    const std::uint64_t bodies = trees_.bodies().count();
-    const auto most_pairs = bodies * (bodies - 1) / 2;
+/// launches is therefore fixed in advance. If a frame is given more body pairs than its bodies can form,
+/// which repeat some, seeding stops at the top level all the same: no level above it is launched.
+void ChunkedWalker::find_top_level(SelfPairs self) {
+    const auto bodies = trees_.bodies().count();
+    const auto most_pairs = most_body_pairs(trees_.bodies().scene(), self);
     std::map<const std::vector<Level>*, std::uint32_t> first_with; // one body per mesh
     for (std::uint32_t body = 0; body < bodies; ++body) first_with.emplace(&trees_.levels(body), body);
     for (const auto& [levels_a, a] : first_with)
         for (const auto& [levels_b, b] : first_with)
-            top_level_ = std::max(top_level_, seed_level(a, b, most_pairs));
+            top_level_ = std::max(top_level_, wanted_level(a, b, most_pairs));
 }
 
 void ChunkedWalker::reserve_starts(std::uint64_t pairs) {

@@ -40,7 +40,10 @@ private:
     bool do_grow(const Status& status) override;
     void do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const override;
 
-    void find_top_level();
+    /// The level at which a pair of bodies is seeded in a frame of `pair_count` body pairs, if that level is
+    /// launched.
+    std::uint32_t wanted_level(std::uint32_t a, std::uint32_t b, std::uint64_t pair_count) const;
+    void find_top_level(SelfPairs self);
     /// Counts the seeds of every body pair and level, then turns the counts into starts.
     void make_seeds(const WalkTask& task);
 

@@ -19,7 +19,7 @@ KERNEL void count_seeds(GLOBAL const real* volumes, GLOBAL const uint* trees, GL
         const uint body_b = body_b_of(pairs, (uint)pair);
         GLOBAL const uint* a = tree_of(trees, body_a);
         GLOBAL const uint* b = tree_of(trees, body_b);
-        const uint own = seed_level(a, b, levels, threshold);
+        const uint own = seed_level(a, b, levels, threshold, level_count);
         const ulong chunks_a = level_of(levels, a, own)[LEVEL_CHUNKS];
         const ulong chunks_b = level_of(levels, b, own)[LEVEL_CHUNKS];
         const int apart = ROOT_TEST ? !overlap(volume_of(volumes, body_a), volume_of(volumes, body_b)) : 0;

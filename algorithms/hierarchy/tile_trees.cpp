@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/hierarchy/tile_trees.h"
 
+#include "algorithms/bodies/self_pairs.h"
 #include "algorithms/sources.h"
 #include "backends/upload.h"
 
@@ -29,16 +30,17 @@ std::uint32_t levels_over(std::uint32_t items) {
 
 } // namespace
 
-TileTrees::TileTrees(const Bodies& bodies, Slabs slabs, std::uint32_t group_size, std::uint64_t most_seeds,
-                     std::uint32_t units_at_once)
+TileTrees::TileTrees(const Bodies& bodies, Slabs slabs, SelfPairs self, std::uint32_t group_size,
+                     std::uint64_t most_seeds, std::uint32_t units_at_once)
     : bodies_(bodies),
       device_(bodies.device()),
       slabs_(slabs),
       group_size_(group_size),
       units_at_once_(units_at_once),
-      shapes_(bodies) {
+      shapes_(bodies),
+      incidence_(bodies, self) {
     lay_out();
-    choose_beginnings(most_seeds);
+    choose_beginnings(most_seeds, self);
     plan_refit();
     tile_table_ = uploaded(device_, bytes_of(tile_rows()), "tiles");
     tops_ = uploaded(device_, bytes_of(top_tiles()), "top tiles");
@@ -100,8 +102,8 @@ void TileTrees::lay_out() {
 
 /// Selects the lowest level that all bodies have and whose tile pairs are few enough to test without the
 /// levels above.
-void TileTrees::choose_beginnings(std::uint64_t most_seeds) {
-    const std::uint64_t pairs = std::uint64_t{bodies_.count()} * (bodies_.count() - 1) / 2;
+void TileTrees::choose_beginnings(std::uint64_t most_seeds, SelfPairs self) {
+    const auto pairs = most_body_pairs(bodies_.scene(), self);
     for (std::uint32_t level = 0; level + 1 < levels(); ++level) {
         std::uint64_t tiles = 1;
         for (std::uint32_t body = 0; body < bodies_.count(); ++body) {
@@ -201,7 +203,7 @@ void TileTrees::do_take(const Subdomain&) {
 }
 
 std::size_t TileTrees::do_bytes() const {
-    auto sum = shapes_.bytes() + (incidence_ ? incidence_->bytes() : 0);
+    auto sum = shapes_.bytes() + incidence_.bytes();
     for (const auto* buffer :
          {&leaves_, &uppers_, &roots_, &volumes_, &tile_table_, &tops_, &taking_part_, &marks_})
         sum += buffer->bytes();

@@ -15,16 +15,15 @@ namespace tandem {
 class TileTrees final : public Hierarchy {
 public:
     /// `slabs`: directions of the bounds of leaves. `bodies` must have Sharing::by_mesh and outlive this
-    /// object. `most_seeds`: maximum number of tile pairs for which bodies start below their tops.
-    /// `units_at_once`: minimum number of refit groups that the device runs concurrently. Neither changes any
-    /// bound. Throws OutOfMemory when the tiles do not fit, DeviceError when there are too many to number.
-    TileTrees(const Bodies& bodies, Slabs slabs, std::uint32_t group_size, std::uint64_t most_seeds,
-              std::uint32_t units_at_once);
-    TileTrees(const Bodies& bodies, Slabs slabs, std::uint32_t group_size, std::uint64_t most_seeds)
-        : TileTrees(bodies, slabs, group_size, most_seeds, bodies.device().info().compute_units) {}
-
-    /// Uploads the table that a walk with pairs of one body needs. Throws OutOfMemory.
-    void add_incidence(SelfPairs self) { incidence_.emplace(bodies_, self); }
+    /// object. `self`: which bodies are in pairs with themselves. `most_seeds`: maximum number of tile pairs
+    /// for which bodies start below their tops, if a frame repeats no body pair. `units_at_once`: minimum
+    /// number of refit groups that the device runs concurrently. Neither changes any bound. Throws
+    /// OutOfMemory when the tiles do not fit, DeviceError when there are too many to number.
+    TileTrees(const Bodies& bodies, Slabs slabs, SelfPairs self, std::uint32_t group_size,
+              std::uint64_t most_seeds, std::uint32_t units_at_once);
+    TileTrees(const Bodies& bodies, Slabs slabs, SelfPairs self, std::uint32_t group_size,
+              std::uint64_t most_seeds)
+        : TileTrees(bodies, slabs, self, group_size, most_seeds, bodies.device().info().compute_units) {}
 
     const Bodies& bodies() const { return bodies_; }
     /// Levels of the highest tree.
@@ -61,8 +60,7 @@ public:
     const Buffer& tile_table() const { return tile_table_; } ///< rows of tiles.clh
     const Buffer& tops() const { return tops_; }             ///< tiles that bodies start with, or NO_TILE
     const TileShapes& shapes() const { return shapes_; }
-    /// Requires add_incidence().
-    const TileIncidence& incidence() const { return *incidence_; }
+    const TileIncidence& incidence() const { return incidence_; }
 
 private:
     /// A row of the tile table (tiles.clh).
@@ -86,7 +84,7 @@ private:
     std::size_t do_bytes() const override;
 
     void lay_out();
-    void choose_beginnings(std::uint64_t most_seeds);
+    void choose_beginnings(std::uint64_t most_seeds, SelfPairs self);
     std::vector<std::uint32_t> top_tiles() const;
     std::vector<Tile> tile_rows() const;
     void plan_refit();
@@ -107,7 +105,7 @@ private:
     std::uint32_t group_size_;
     std::uint32_t units_at_once_;
     TileShapes shapes_;
-    std::optional<TileIncidence> incidence_;
+    TileIncidence incidence_;
     std::vector<std::uint32_t> level_first_; ///< the first tile of each level
     std::vector<bool> is_top_;               ///< by level: whether it is the top of some body's tree
     /// Common start of all bodies, if it is below some tops: a level and the maximum number of tiles per

@@ -6,6 +6,8 @@
 #include "algorithms/tiled/tiled_parameters.h"
 #include "base/error.h"
 
+#include <fmt/format.h>
+
 namespace tandem {
 
 namespace {
@@ -56,6 +58,7 @@ Grid TileLevels::grid(std::uint32_t level) {
 
 void TileLevels::expect(const Status& status) {
     const auto body_pairs = status.counter(STATUS_BODY_PAIRS);
+    check_start_pairs(body_pairs); // those that the device has found
     for (std::uint32_t level = 0; level < trees_.walked_levels(); ++level) {
         const bool is_found = level + 1 < trees_.walked_levels();
         const std::uint64_t begins = trees_.begins(level);
@@ -105,11 +108,13 @@ void TileLevels::launch_level(const WalkTask& task, std::uint32_t level) {
     trees_.bodies().device().launch(kernel_, grid(level), arguments);
 }
 
-void TileLevels::check_start_pairs(std::size_t body_pairs) const {
+void TileLevels::check_start_pairs(std::uint64_t body_pairs) const {
     const std::uint64_t begins = trees_.begins(trees_.walked_levels() - 1);
-    if (begins > 1 && begins * begins * body_pairs > 0xffffffffu) // turns.clh counts them in a word
-        throw InputError(
-            "body pairs given more than once make more than 2^32 initial pairs of tiles; lower most_seeds");
+    if (begins > 1 && body_pairs > 0xffffffffu / (begins * begins)) // turns.clh counts them in a word
+        throw InputError(fmt::format(
+            "{} body pairs start with {} pairs of tiles each, and a frame numbers fewer than 2^32; "
+            "lower most_seeds, or give each body pair once",
+            body_pairs, begins * begins));
 }
 
 void TileLevels::launch(const WalkTask& task) {

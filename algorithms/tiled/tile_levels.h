@@ -29,6 +29,7 @@ public:
     void launch(const WalkTask& task);
 
     /// Sets what a level's grid expects to the counts of the last walk.
+    /// Throws InputError as launch(), for body pairs that the device has found.
     void expect(const Status& status);
     /// Grows the lists that the last walk overflowed. Returns true if it must run again. Throws OutOfMemory.
     bool grow(const Status& status);
@@ -50,7 +51,7 @@ public:
     std::uint64_t expected_leaf_pairs() const { return *expected_[0].pairs; }
 
 private:
-    void check_start_pairs(std::size_t body_pairs) const;
+    void check_start_pairs(std::uint64_t body_pairs) const;
     void launch_level(const WalkTask& task, std::uint32_t level);
 
     TileTrees& trees_;

@@ -99,9 +99,8 @@ private:
         const auto slabs = context.settings[tandem::parameters::slabs];
         const auto shape = fitting_shape(context.settings, slabs, context.device.info(), context.shape);
         auto trees = std::make_unique<TileTrees>(
-            context.bodies, slabs, shape.group_size,
+            context.bodies, slabs, context.settings[tandem::parameters::self], shape.group_size,
             static_cast<std::uint64_t>(context.settings[tiled_parameters::most_seeds]));
-        trees->add_incidence(context.settings[tandem::parameters::self]);
         auto walker = std::make_unique<TiledWalker>(*trees, context, shape);
         return {std::move(trees), std::move(walker)};
     }

@@ -3,6 +3,7 @@
 #include "tests/support/flawed.h"
 #include "tests/support/limited.h"
 #include "tests/support/long_form.h"
+#include "algorithms/hierarchy/tile_trees.h"
 #include "base/error.h"
 
 #include <fmt/format.h>
@@ -134,6 +135,53 @@ TEST_P(SelfPairsOf, LargerBodiesHaveThePairsOfASweep) {
             ASSERT_GT(of_body(right.pairs, 1), 5000u);
             expect_equal(session->run(frame), right);
         }
+}
+
+/// Pairs of a body with itself make more body pairs than every two bodies, and repeated ones more than both.
+/// Both lower the seed threshold of a body pair, so that pairs would be seeded above the levels that two
+/// bodies need.
+TEST_P(SelfPairsOf, MoreBodyPairsThanTwoBodiesFormAreWalked) {
+    const auto scene = folded_boxes(7);
+    const auto frame = scene.frame(1);
+    const std::array given{BodyPair{0, 1}, BodyPair{1, 1}, BodyPair{1, 2}, BodyPair{2, 2}};
+    for (const auto* traversal : algorithms()) {
+        if (!declares(*traversal, "seed_target")) continue;
+        for (const std::string schedule : {"group", "item"})
+            // Bodies have 515 chunks: three body pairs are seeded at level 0, and from four on above it.
+            for (const std::string target : {"800000", "1000000", "2000000"}) {
+                const SettingTexts settings{
+                    {"self", "on"}, {"leaves", "4"}, {"seed_target", target}, {"schedule", schedule}};
+                SCOPED_TRACE(std::string(traversal->name()) + text(settings));
+                const auto session = prepare(*traversal, scene, settings);
+                const auto right = right_for(*session, scene, frame, Method::sweep);
+                expect_equal(session->run(frame), right);
+                const auto once = session->run(frame, given);
+                ASSERT_GT(once.count, 5000u);
+                for (const std::size_t times : {2, 3, 9}) {
+                    std::vector<BodyPair> repeated;
+                    for (std::size_t i = 0; i < times; ++i)
+                        repeated.insert(repeated.end(), given.begin(), given.end());
+                    EXPECT_EQ(session->run(frame, repeated).count, times * once.count);
+                }
+            }
+    }
+}
+
+/// One body has no pair of two bodies, but one with itself. It must not start with all pairs of its tiles of
+/// level 0, which are more than 2^32 for two million tetrahedra.
+TEST_P(SelfPairsOf, OneLargeBodyStartsWithFewPairsOfTiles) {
+    auto scene = folded_boxes(11);
+    scene.bodies = {{.mesh = 0}};
+    const Bodies bodies(on, scene, {}, Bodies::Sharing::by_mesh);
+    const std::uint32_t group_size = std::min(64u, on.info().max_group_size);
+    const std::uint64_t tiles = (scene.meshes.front().tetrahedra.size() + 31) / 32; // 250
+    for (const std::uint64_t most_seeds : {1u, 64u, 62499u, 62500u}) {
+        SCOPED_TRACE(most_seeds);
+        const TileTrees trees(bodies, Slabs::three, SelfPairs::on, group_size, most_seeds);
+        const std::uint64_t begins = trees.begins(trees.walked_levels() - 1);
+        EXPECT_LE(begins * begins, most_seeds);
+        EXPECT_EQ(begins == tiles, most_seeds >= tiles * tiles);
+    }
 }
 
 /// Less memory than the pairs need: batches, and windows of the one body's items.

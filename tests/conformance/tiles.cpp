@@ -90,7 +90,7 @@ protected:
         PreparedTrees chunks(on, scene, geometry, 4096, group_size, Bodies::Sharing::by_mesh);
         chunks.update(frame);
         Bodies bodies(on, scene, geometry, Bodies::Sharing::by_mesh);
-        TileTrees tiles(bodies, slabs, group_size, 1, units_at_once);
+        TileTrees tiles(bodies, slabs, SelfPairs::off, group_size, 1, units_at_once);
         bodies.update(frame);
         tiles.refit(frame);
         const auto k = static_cast<std::size_t>(geometry.k);
@@ -241,7 +241,7 @@ TEST_P(Tiles, FewBodiesStartBelowTheirTops) {
             fmt::format("{} bodies of {} tetrahedra and more, {} seeds", count, counts.front(), most_seeds));
         const auto scene = scattered_scene(counts, count);
         const Bodies bodies(on, scene, {}, Bodies::Sharing::by_mesh);
-        const TileTrees trees(bodies, Slabs::three, group_size, most_seeds);
+        const TileTrees trees(bodies, Slabs::three, SelfPairs::off, group_size, most_seeds);
         EXPECT_EQ(trees.levels(), levels);
         EXPECT_EQ(trees.walked_levels(), walked);
         EXPECT_EQ(trees.begins(walked - 1), starts);

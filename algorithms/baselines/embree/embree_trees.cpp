@@ -49,7 +49,7 @@ std::uint32_t concurrency_of(const Settings& settings) {
 // Leaves of tiles have all 6 slabs with either choice of slabs; this choice has the host's fastest kernels.
 EmbreeTrees::EmbreeTrees(const BuildContext& context)
     : device_(context.device),
-      tiles_(context.bodies, Slabs::three, context.shape.group_size, 1),
+      tiles_(context.bodies, Slabs::three, SelfPairs::off, context.shape.group_size, 1),
       embree_(rtcNewDevice(nullptr)),
       trees_(context.bodies.count()),
       arena_(static_cast<int>(concurrency_of(context.settings))),
