@@ -1,7 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/answer/status.h"
 
+#include <fmt/format.h>
+
 namespace tandem {
+
+namespace {
+
+/// By number of the bound.
+constexpr std::array<std::string_view, EXCEEDED_WORDS> bounds{"the queries of a body pair",
+                                                              "the node pairs in a queue"};
+
+} // namespace
 
 Status::Status(Device& device, Writes writes) : device_(device), writes_(writes) {
     buffer_ = device.allocate(sizeof(Words), "status");
@@ -43,6 +53,13 @@ void Status::write(const Words& words) {
 void Status::read() {
     const StageScope scope(device_, Stage::read);
     device_.download(buffer_, std::as_writable_bytes(std::span(words_)));
+    for (std::size_t i = 0; i < bounds.size(); ++i)
+        if (words_[STATUS_EXCEEDED + i] != 0)
+            throw DeviceError(
+                fmt::format("{}: a frame exceeds a bound that tandem has derived for {}, so that "
+                            "its answer lacks pairs; this is an error of tandem: report it "
+                            "with the scene and the settings",
+                            device_.info().id, bounds[i]));
 }
 
 } // namespace tandem

@@ -24,7 +24,8 @@ public:
     void set(std::size_t word, std::uint64_t value);
     /// Writes the host's copy with the window of a windowed walk, items first..end - 1.
     void set_window(std::uint32_t first, std::uint32_t end);
-    /// Waits for the device and reads all words.
+    /// Waits for the device and reads all words. Throws DeviceError that names the bound if a kernel has
+    /// found one not to hold (STATUS_EXCEEDED).
     void read();
     /// The 64-bit counter whose low word is number `word`, as last read or written.
     std::uint64_t counter(std::size_t word) const {

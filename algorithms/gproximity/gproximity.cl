@@ -144,7 +144,12 @@ KERNEL void traverse_queues(GLOBAL const real* nodes, GLOBAL const uint* trees, 
     // Set in work-item 0 if the group starts without items; it then counts as idle from the start.
     uint idles = 0;
     if (LOCAL_ID == 0u) {
-        take_items(shared, counts[GROUP_ID]);
+        uint stored = counts[GROUP_ID];
+        if (stored > queue_capacity) { // what is past the end was never written
+            ATOMIC_ADD(status + STATUS_EXCEEDED + EXCEEDED_QUEUE, 1u);
+            stored = queue_capacity;
+        }
+        take_items(shared, stored);
         idles = shared[STOP];
         if (idles != 0u) ATOMIC_ADD(idle, 1u);
     }

@@ -97,6 +97,9 @@ KERNEL void query_leaves(GLOBAL const real* nodes, GLOBAL const uint* trees, GLO
     for (ulong turn = GROUP_ID; turn < turns; turn += GROUP_COUNT) {
         const uint item = (uint)(turn % blocks) * (uint)GROUP_SIZE + LOCAL_ID;
         const BodyQuery query = body_query(trees, pairs, (uint)(turn / blocks));
+        if (LOCAL_ID == 0u && turn % blocks == 0u
+            && query.querying[TREE_ITEMS] > (ulong)blocks * (uint)GROUP_SIZE)
+            ATOMIC_ADD(status + STATUS_EXCEEDED + EXCEEDED_QUERIES, 1u);
         const int has_item = item < query.querying[TREE_ITEMS] && query.queried[TREE_ITEMS] != 0u
                              && (!query.a_queries || in_window(status, item, (ulong)item + 1));
         if (has_item) query_tree(&query, nodes, &output, item, &tally);

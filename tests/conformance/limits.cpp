@@ -154,5 +154,76 @@ TEST_F(Limits, QueuesTraverseABodyPairPastHalfTheRange) {
               expected);
 }
 
+/// A queue with more node pairs than it has rows, which the host's balance never makes.
+TEST_F(Limits, AQueueBeyondItsCapacityIsReported) {
+    const auto status = uploaded(bytes_of(words));
+    const std::vector<std::uint32_t> items(3 * 4);
+    const auto queue = uploaded(bytes_of(items));
+    const auto idle = uploaded(bytes_of(std::vector<std::uint32_t>{0}));
+    const auto found = host.allocate(expected * 16, "found");
+    const auto table = pairs.adopted(host);
+    const Defines defines{{"LOCAL_QUEUE", "4"}, {"IDLE_LIMIT", "1"}};
+    const auto kernel = compile("algorithms/gproximity/gproximity.cl", "traverse_queues", defines);
+    for (const std::uint32_t stored : {4u, 5u}) {
+        const auto counts = uploaded(bytes_of(std::vector<std::uint32_t>{stored}));
+        const std::array<Argument, 13> arguments{on.trees.nodes(),
+                                                 on.trees.tree_table(),
+                                                 on.bodies.row_table(),
+                                                 on.bodies.ids(),
+                                                 on.bodies.tetrahedra(),
+                                                 table,
+                                                 queue,
+                                                 counts,
+                                                 4u,
+                                                 idle,
+                                                 found,
+                                                 static_cast<std::uint32_t>(expected),
+                                                 status};
+        found_by(kernel, arguments, status);
+        EXPECT_EQ(words[STATUS_EXCEEDED + EXCEEDED_QUEUE], stored > 4 ? 1u : 0u);
+    }
+}
+
+/// Fewer blocks of queries than a body pair needs, which the host's count of queries never gives.
+TEST_F(Limits, QueriesBeyondTheirBlocksAreReported) {
+    const auto found = host.allocate(expected * 16, "found");
+    const std::vector<std::uint32_t> pair{0, 1};
+    const auto table = uploaded(bytes_of(pair));
+    const auto kernel = compile("algorithms/leaf_query/body_query.cl", "query_leaves");
+    const auto enough = on.bodies.row(0).tetrahedron_count;
+    for (const std::uint32_t blocks : {enough, enough - 1}) {
+        words.assign(STATUS_WORDS, 0);
+        words[STATUS_BODY_PAIRS] = 1;
+        const auto status = uploaded(bytes_of(words));
+        const std::array<Argument, 11> arguments{on.trees.nodes(),
+                                                 on.trees.tree_table(),
+                                                 on.bodies.row_table(),
+                                                 on.bodies.ids(),
+                                                 on.bodies.tetrahedra(),
+                                                 table,
+                                                 1u,
+                                                 blocks,
+                                                 found,
+                                                 static_cast<std::uint32_t>(expected),
+                                                 status};
+        const auto count = found_by(kernel, arguments, status);
+        EXPECT_EQ(count == expected, blocks == enough);
+        EXPECT_EQ(words[STATUS_EXCEEDED + EXCEEDED_QUERIES], blocks == enough ? 0u : 1u);
+    }
+}
+
+TEST_F(Limits, AFrameThatExceedsABoundFails) {
+    Status status(host, Status::Writes::queued);
+    status.begin(0);
+    EXPECT_NO_THROW(status.read());
+    for (std::size_t bound = 0; bound < EXCEEDED_WORDS; ++bound) {
+        auto exceeded = status.words();
+        exceeded[STATUS_EXCEEDED + bound] = 1;
+        status.write(exceeded);
+        EXPECT_THROW(status.read(), DeviceError) << bound;
+        status.begin(0);
+    }
+}
+
 } // namespace
 } // namespace tandem
