@@ -16,12 +16,27 @@ constexpr std::array<std::byte, BufferGuards::bytes> make_pattern() {
 }
 
 constexpr auto pattern = make_pattern();
+constexpr std::size_t fill_words = std::size_t{1} << 18; ///< of an upload that fills a buffer
 
 } // namespace
 
 void BufferGuards::add(Buffer::Impl& buffer) {
     add_ticket(device_->do_upload(buffer, pattern, buffer.bytes, false));
     buffers_.push_back(&buffer);
+    fill(buffer);
+}
+
+void BufferGuards::fill(Buffer::Impl& buffer) {
+    const auto words = std::as_bytes(std::span(filling_));
+    for (std::size_t at = 0; at < buffer.bytes && !words.empty(); at += words.size())
+        add_ticket(
+            device_->do_upload(buffer, words.first(std::min(words.size(), buffer.bytes - at)), at, false));
+}
+
+void BufferGuards::fill(std::uint32_t word, std::span<const std::string_view> kept) {
+    filling_.assign(fill_words, word);
+    for (auto* buffer : buffers_)
+        if (std::ranges::find(kept, buffer->label) == kept.end()) fill(*buffer);
 }
 
 void BufferGuards::check(Buffer::Impl& buffer) {

@@ -7,8 +7,9 @@
 
 namespace tandem {
 
-/// Writes a byte pattern behind each buffer of a device to detect kernels that write past a buffer's end.
-/// Device::guard_buffers() creates it. Its commands do not appear in the device's trace.
+/// Writes a byte pattern behind each buffer of a device to detect kernels that write past a buffer's end, and
+/// on request fills buffers to detect those that read what nothing has written. Device::guard_buffers()
+/// creates it. Its commands do not appear in the device's trace.
 class BufferGuards {
 public:
     /// Size of the pattern. Kernels that overrun a capacity write the first rows behind it.
@@ -23,6 +24,8 @@ public:
 
     /// Writes the pattern behind a new buffer, whose allocation is `padding` bytes larger than the buffer.
     void add(Buffer::Impl& buffer);
+    /// Fills all buffers but those labelled with one of `kept`, and later every new buffer, with `word`.
+    void fill(std::uint32_t word, std::span<const std::string_view> kept);
     /// Checks a buffer before it is freed; the next check() reports the result.
     void remove(Buffer::Impl& buffer) noexcept;
     /// Waits for the device and checks all buffers. Throws std::logic_error that names the first buffer with
@@ -33,12 +36,14 @@ public:
 
 private:
     void check(Buffer::Impl& buffer);
+    void fill(Buffer::Impl& buffer);
     void add_ticket(std::uint64_t ticket) {
         if (ticket != 0) tickets_.push_back(ticket);
     }
 
     Device* device_;
     std::vector<Buffer::Impl*> buffers_;
+    std::vector<std::uint32_t> filling_; ///< copies of the word that new buffers get; empty: none
     std::array<std::byte, bytes> read_back_{};
     std::string overwritten_; ///< message that the next check() throws; empty: none
     std::vector<std::uint64_t> tickets_;

@@ -72,6 +72,11 @@ void Device::guard_buffers() {
     if (!guards_) guards_ = std::make_shared<BufferGuards>(*this);
 }
 
+void Device::fill_buffers(std::uint32_t word, std::span<const std::string_view> kept) {
+    guard_buffers();
+    guards_->fill(word, kept);
+}
+
 void Device::do_check_guards() { guards_->check(); }
 
 void Device::record(Event event, Clock::time_point begin) {
