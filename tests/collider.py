@@ -64,6 +64,17 @@ class Answers(ColliderCase):
         with self.assertRaisesRegex(ValueError, "self"):
             self.collider([mesh], self_collision="yes")
 
+    def test_every_setting_can_be_given(self):
+        """No setting has the name of another argument, and those of a collider make an equal one."""
+        for algorithm in tandem.algorithms():
+            with self.subTest(algorithm):
+                first = self.collider(algorithm=algorithm)
+                twin = tandem.Collider(self.meshes, algorithm, **first.settings)
+                self.assertEqual(twin.settings, first.settings)
+                self.assertEqual(tandem.Collider(self.meshes, **twin.arguments).settings, first.settings)
+                self.assertEqual(twin.run(POSES).digest(), first.run(POSES).digest())
+        self.assertEqual(self.collider(algorithm="gproximity", groups=3, body_groups=[[1], [2]]).settings["groups"], "3")
+
     def test_filters(self):
         expected = self.collider().pairs(POSES)
         self.assertGreater(len(expected), 10)
@@ -73,9 +84,9 @@ class Answers(ColliderCase):
                     options = {"device": device, "broad": broad}
                     self.assertEqual(self.collider(never_meet=[(1, 0)], **options).count(POSES), 0)
                     self.assertEqual(self.collider(never_meet=[(1, 1)], **options).count(POSES), len(expected))
-                    self.assertEqual(self.collider(groups=[[0], [3, 31]], meets=[[3], [1]], **options).count(POSES), 0)
-                    self.assertEqual(self.collider(groups=[[0], [3, 31]], meets=[[31], None], **options).count(POSES), len(expected))
-        for options, message in (({"groups": [[0]]}, "groups: 1 lists for 2 bodies"), ({"groups": [[0], [32]]}, r"groups\[1\]: 32 is not the number of a group"),
+                    self.assertEqual(self.collider(body_groups=[[0], [3, 31]], meets=[[3], [1]], **options).count(POSES), 0)
+                    self.assertEqual(self.collider(body_groups=[[0], [3, 31]], meets=[[31], None], **options).count(POSES), len(expected))
+        for options, message in (({"body_groups": [[0]]}, "body_groups: 1 lists for 2 bodies"), ({"body_groups": [[0], [32]]}, r"body_groups\[1\]: 32 is not the number of a group"),
                                  ({"meets": [[-1], None]}, r"meets\[0\]: -1 is not"), ({"never_meet": [(0, 2)]}, r"never_meet\[0\]: expected two bodies of 2"),
                                  ({"never_meet": [(0, 1, 1)]}, r"never_meet\[0\]: expected two")):
             with self.assertRaisesRegex(ValueError, message):

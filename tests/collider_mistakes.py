@@ -121,7 +121,7 @@ class Meshes(ColliderCase):
         for twin in (pickle.loads(pickle.dumps(mesh)), copy.deepcopy(mesh)):
             self.assertEqual(twin.name, "part")
             self.assertTrue((twin.vertices == mesh.vertices).all() and (twin.tetrahedra == mesh.tetrahedra).all())
-        collider = self.collider(deformable=[1], groups=[[0], [1]], meets=[None, {0}], never_meet=[(0, 0)], k=12, device="opencl:0")
+        collider = self.collider(deformable=[1], body_groups=[[0], [1]], meets=[None, {0}], never_meet=[(0, 0)], k=12, device="opencl:0")
         self.assertEqual(repr(collider), "<tandem.Collider: 2 bodies, tiled on opencl:0>")
         arguments = pickle.loads(pickle.dumps(collider.arguments))
         twin = tandem.Collider(self.meshes, **arguments)

@@ -39,7 +39,7 @@ class Worlds(ColliderCase):
     def test_equals_runs_of_one_world_each(self):
         meshes, worlds = [self.meshes[i % 2] for i in range(4)], 3
         for device in DEVICES:
-            for named in ({}, {"broad": "device"}, {"algorithm": "leaf_query"}, {"algorithm": "chunked"}, {"never_meet": [(0, 1)], "groups": [[0], [1], [0], [1]], "meets": [None, None, [0], None]}):
+            for named in ({}, {"broad": "device"}, {"algorithm": "leaf_query"}, {"algorithm": "chunked"}, {"never_meet": [(0, 1)], "body_groups": [[0], [1], [0], [1]], "meets": [None, None, [0], None]}):
                 with self.subTest(device=device, **named):
                     poses = self.poses(worlds, 4)
                     alone = self.collider(meshes, device=device, **named)

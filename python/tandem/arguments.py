@@ -77,7 +77,7 @@ def body_pairs_of(pairs, what, bodies):
 
 
 def lists_of(groups):
-    """`groups` or `meets` as lists, which can be pickled."""
+    """`body_groups` or `meets` as lists, which can be pickled."""
     return None if groups is None else [None if one is None else list(one) for one in groups]
 
 

@@ -128,7 +128,7 @@ class Collider:
     device: "host", "opencl:0", "cuda:0" as tandem.devices() lists them, or several that share a frame: "cuda:0+cuda:1".
     bodies: the number of each body's mesh, from 0; by default each mesh is one body.
     deformable: True, or the numbers of the bodies whose vertices change with every frame.
-    groups: a list of groups, 0 to 31, for each body; by default [0].
+    body_groups: a list of groups, 0 to 31, for each body; by default [0]. (Setting groups of gproximity counts work-groups.)
     meets: a list of groups that it meets for each body, or None for all. Two bodies meet only if each meets a group of the other.
     never_meet: pairs of bodies that never meet, in either order; (n, n): body n never meets itself.
     self_collision: True: also pairs of tetrahedra of one body that share no vertex; "deformable": only in deformable bodies. The same as
@@ -153,7 +153,7 @@ class Collider:
 
     # The slash makes `self` positional, because a setting has this name as well.
     def __init__(self, meshes: Sequence[Any], /, algorithm: str = "tiled", device: str = "host", *, bodies: Iterable[int] | None = None,
-                 deformable: bool | Iterable[int] = False, groups: Sequence[Iterable[int]] | None = None,
+                 deformable: bool | Iterable[int] = False, body_groups: Sequence[Iterable[int]] | None = None,
                  meets: Sequence[Iterable[int] | None] | None = None, never_meet: Iterable[Sequence[int]] = (),
                  self_collision: bool | str = False, duplicates: str | None = None, weld: float | None = None, worlds: int | None = None, preset: str = "", stream: Any = None,
                  **settings: Any) -> None:
@@ -173,14 +173,14 @@ class Collider:
                 raise ValueError("self_collision and setting self are the same; give one of them")
             settings["self"] = "on" if self_collision is True else self_collision
         texts = {name: text_of(value, name) for name, value in settings.items()}
-        filters = list(zip(bits_of_bodies(groups, "groups", 1, len(flags)), bits_of_bodies(meets, "meets", 2**32 - 1, len(flags))))
+        filters = list(zip(bits_of_bodies(body_groups, "body_groups", 1, len(flags)), bits_of_bodies(meets, "meets", 2**32 - 1, len(flags))))
         apart = body_pairs_of(never_meet, "never_meet", len(flags))
         address = None if stream is None else stream_address(stream)
         count = numbering.count
         options = _core.ColliderOptions(mesh_of_body * count, flags * count, algorithm, preset, device, texts, filters * count,
                                         numbering.in_all_worlds(apart), count, address)
         self._core = _core.Collider(all_meshes, options, stream)
-        self._arguments = {"algorithm": algorithm, "device": device, "bodies": mesh_of_body, "deformable": self._deformable, "groups": lists_of(groups),
+        self._arguments = {"algorithm": algorithm, "device": device, "bodies": mesh_of_body, "deformable": self._deformable, "body_groups": lists_of(body_groups),
                            "meets": lists_of(meets), "never_meet": apart, "duplicates": duplicates, "weld": weld, "worlds": numbering.worlds, "preset": preset, **texts}
 
     def run(self, poses: Any = None, vertices: Any = None, *, next_poses: Any = None, next_vertices: Any = None,
@@ -199,7 +199,7 @@ class Collider:
             of the frame. What is left out has the same default as in the frame, the identity or the vertices of the mesh, not the frame's own
             poses or vertices.
         body_pairs: pairs of bodies to walk, in either order, instead of those that may overlap: from a broad phase of the caller. The collider's
-            groups, meets and never_meet do not apply to them. (n, n) needs self_collision.
+            body_groups, meets and never_meet do not apply to them. (n, n) needs self_collision.
 
         Arrays in host memory are NumPy arrays or objects with __dlpack__. Contiguous float64 arrays are uploaded without another copy. Arrays
         on the collider's GPU (CuPy, PyTorch, JAX; __dlpack__ or __cuda_array_interface__) are contiguous float64 or float32. Kernels read
