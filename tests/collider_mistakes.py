@@ -79,6 +79,9 @@ class Mistakes(ColliderCase):
             ("no body is deformable; make the collider with deformable=True", ValueError, lambda: collider.run(vertices=[points])),
             ("vertices: 1 arrays for 2 deformable bodies", ValueError, lambda: soft.run(vertices=[points])),
             ("vertices: 19 rows for body 0, whose mesh has 20 vertices", ValueError, lambda: soft.run(vertices={0: points[1:]})),
+            ("meshes: type dict; expected a list", TypeError, lambda: self.collider({"a": self.meshes[0], "b": self.meshes[1]})),
+            ("bodies: type dict; expected a list", TypeError, lambda: self.collider(bodies={0: 1})),
+            ("meshes: type dict; expected a list", TypeError, lambda: self.written({"a": self.meshes[0]})),
             ("unknown setting of tiled 'kk'", ValueError, lambda: self.collider(kk=8)),
             ("a collider owns memory of devices and cannot be pickled", TypeError, lambda: pickle.dumps(collider)))
 
@@ -92,6 +95,39 @@ class Mistakes(ColliderCase):
             self.assertIs(type(caught.exception), kind, text)
             self.assertNotIn("\n", text)
             self.assertIn(words, text)
+
+    def written(self, meshes=None, **options):
+        return tandem.write_frames(self.work / "refused", self.meshes if meshes is None else meshes, **options)
+
+    def test_no_integer_is_a_bool(self):
+        """A list of bools is a mask, which no argument takes; True alone is a flag."""
+        points, poses, scene = self.meshes[1][0], numpy.array(POSES), tandem.make_scene("plates")
+        collider, soft, many = self.collider(), self.collider(deformable=[1]), self.collider(worlds=2)
+        for truth in (True, numpy.True_):
+            word = f"type {type(truth).__name__}; expected "
+            for words, call in (
+                    ("worlds: " + word + "the number of worlds", lambda: self.collider(worlds=truth)),
+                    ("bodies[0]: " + word + "the number of a mesh", lambda: self.collider(bodies=[truth, False])),
+                    ("deformable[0]: " + word + "the number of a body", lambda: self.collider(deformable=[truth, False])),
+                    ("deformable[0]: " + word + "the number of a body", lambda: self.collider(deformable=[truth] * 2)),
+                    ("body_groups[0]: " + word + "the number of a group", lambda: self.collider(body_groups=[[truth], [1]])),
+                    ("meets[1]: " + word + "the number of a group", lambda: self.collider(meets=[None, [truth]])),
+                    ("never_meet[0]: " + word + "the number of a body", lambda: self.collider(never_meet=[(0, truth)])),
+                    ("stream: " + word + "a CUDA stream or its address", lambda: self.collider(stream=truth)),
+                    ("body_pairs[0]: " + word + "the number of a body", lambda: collider.run(poses, body_pairs=[(0, truth)])),
+                    ("body_pairs[0]: " + word + "the number of a world", lambda: many.run(numpy.array([poses, poses]), body_pairs=[(truth, 0, 1)])),
+                    ("vertices: " + word + "the number of a body", lambda: soft.run(vertices={truth: points})),
+                    ("poses: " + word + "the number of a body", lambda: collider.update({truth: poses[0]})),
+                    ("bodies[0]: " + word + "the number of a mesh", lambda: self.written(bodies=[truth], poses=[poses[:1]])),
+                    ("deformable[0]: " + word + "the number of a body", lambda: self.written(deformable=[truth], poses=[poses], vertices=[[points]])),
+                    ("vertices[0]: " + word + "the number of a body", lambda: self.written(deformable=[1], poses=[poses], vertices=[{truth: points}])),
+                    ("frame: type bool; expected the number of a frame", lambda: scene.poses(True)),
+                    ("frame: type bool; expected the number of a frame", lambda: scene.vertices(True))):
+                with self.subTest(words, kind=type(truth).__name__), self.assertRaises(TypeError) as caught:
+                    call()
+                self.assertIn(words, str(caught.exception))
+        self.assertEqual(self.collider(bodies=[numpy.int64(0), numpy.array(1)]).run(POSES).digest(), collider.run(POSES).digest())
+        self.assertEqual(self.collider(deformable=numpy.True_).arguments["deformable"], [0, 1])
 
     def test_masked_arrays_of_every_kind(self):
         collider, soft = self.collider(), self.collider(deformable=[1])

@@ -118,7 +118,7 @@ class Worlds(ColliderCase):
                 ("body_pairs[0]: 2 is not the number of a body", ValueError, lambda: together.run(poses, body_pairs=[(0, 1, 2)])),
                 ("worlds: 0 with 2 bodies each; give 1 or more", ValueError, lambda: self.collider(worlds=0)),
                 ("worlds: type str; expected the number", TypeError, lambda: self.collider(worlds="3")),
-                ("worlds: -1 is not", ValueError, lambda: self.collider(worlds=-1))):
+                ("worlds: -1 with 2 bodies each; give 1 or more", ValueError, lambda: self.collider(worlds=-1))):
             with self.subTest(words), self.assertRaises(kind) as caught:
                 call()
             self.assertIn(words, str(caught.exception))

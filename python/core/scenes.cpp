@@ -14,14 +14,20 @@ namespace tandem::python {
 
 namespace {
 
-Frame frame_of(const Scene& scene, std::size_t number) {
-    if (number >= scene.frame_count)
+/// `number`: an integer from 0 on, and no bool, which is one in Python.
+Frame frame_of(const Scene& scene, nb::handle number) {
+    std::size_t index = 0;
+    if (PyBool_Check(number.ptr()) != 0 || !nb::try_cast(number, index))
+        throw nb::type_error(fmt::format("frame: type {}; expected the number of a frame, from 0 on",
+                                         nb::type_name(number.type()).c_str())
+                                 .c_str());
+    if (index >= scene.frame_count)
         throw nb::index_error(
-            fmt::format("frame {} of {}; frames are numbered from 0", number, scene.frame_count).c_str());
-    return scene.frame(number);
+            fmt::format("frame {} of {}; frames are numbered from 0", index, scene.frame_count).c_str());
+    return scene.frame(index);
 }
 
-auto poses_of(const Scene& scene, std::size_t number) {
+auto poses_of(const Scene& scene, nb::handle number) {
     const auto frame = frame_of(scene, number);
     std::vector<double> rows;
     for (const auto& [q, t] : frame.poses)
@@ -29,7 +35,7 @@ auto poses_of(const Scene& scene, std::size_t number) {
     return owned_array<double, 7>(std::move(rows));
 }
 
-nb::dict vertices_of(const Scene& scene, std::size_t number) {
+nb::dict vertices_of(const Scene& scene, nb::handle number) {
     auto frame = frame_of(scene, number);
     nb::dict all;
     for (std::size_t body = 0; body < scene.bodies.size(); ++body)
@@ -70,8 +76,10 @@ void bind_scenes(nb::module_& module) {
         .def_prop_ro("bodies", &meshes_of_bodies)
         .def_prop_ro("deformable", &deformable_bodies)
         .def("poses", &poses_of, nb::arg("frame"),
+             nb::sig(
+                 "def poses(self, frame: int) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 7))]"),
              "Poses of a frame, numbered from 0: (bodies, 7) float64, rows tx ty tz qw qx qy qz.")
-        .def("vertices", &vertices_of, nb::arg("frame"),
+        .def("vertices", &vertices_of, nb::arg("frame"), nb::sig("def vertices(self, frame: int) -> dict"),
              "Vertices of a frame's deformable bodies: {body: (n, 3) float64}, in world coordinates.");
     module.def(
         "make_scene",

@@ -3,7 +3,9 @@
 with the name of the argument."""
 from __future__ import annotations
 
+import operator
 import os
+from collections.abc import Mapping
 
 import numpy
 
@@ -11,8 +13,8 @@ from ._core import Mesh
 
 
 def list_of(value, what):
-    """The elements of any iterable except texts, paths and meshes."""
-    if isinstance(value, (str, bytes, os.PathLike, Mesh)):
+    """The elements of any iterable except texts, paths, meshes, and mappings, whose keys alone would be taken."""
+    if isinstance(value, (str, bytes, os.PathLike, Mesh, Mapping)):
         raise TypeError(f"{what}: type {type(value).__name__}; expected a list")
     try:
         return list(value)
@@ -20,12 +22,19 @@ def list_of(value, what):
         raise TypeError(f"{what}: type {type(value).__name__}; expected a list") from None
 
 
-def number_of(value, what, of="mesh"):
-    """An integer from 0 on, of any type with __index__."""
+def integer_of(value, what, expected):
+    """An integer of any type with __index__ except bool: a list of these is a mask, which nothing here takes."""
     try:
-        number = value.__index__()
-    except AttributeError:
-        raise TypeError(f"{what}: type {type(value).__name__}; expected the number of a {of}") from None
+        if not isinstance(value, (bool, numpy.bool_)):
+            return operator.index(value)
+    except TypeError:
+        pass
+    raise TypeError(f"{what}: type {type(value).__name__}; expected {expected}")
+
+
+def number_of(value, what, of="mesh"):
+    """An integer from 0 on."""
+    number = integer_of(value, what, f"the number of a {of}")
     if not 0 <= number < 2**32:
         raise ValueError(f"{what}: {number} is not the number of a {of}; numbers start at 0")
     return number
@@ -57,11 +66,10 @@ def bits_of_bodies(lists, what, default, bodies):
 def _bits(groups, what):
     bits = 0
     for group in list_of(groups, what):
-        if not hasattr(group, "__index__"):
-            raise TypeError(f"{what}: type {type(group).__name__}; expected the number of a group")
-        if not 0 <= group.__index__() < 32:
-            raise ValueError(f"{what}: {group} is not the number of a group; they are 0 to 31")
-        bits |= 1 << group.__index__()
+        number = integer_of(group, what, "the number of a group")
+        if not 0 <= number < 32:
+            raise ValueError(f"{what}: {number} is not the number of a group; they are 0 to 31")
+        bits |= 1 << number
     return bits
 
 

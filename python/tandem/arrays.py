@@ -4,6 +4,8 @@ from collections.abc import Mapping
 
 import numpy
 
+from .arguments import integer_of
+
 POSE = 7  # columns of a pose: tx ty tz qw qx qy qz
 LARGEST_ERROR = 1e-4  # largest difference from a rotation that counts as rounding
 CPU, CUDA_HOST = 1, 3  # DLPack's numbers of memory types
@@ -42,11 +44,10 @@ def stream_address(stream):
         stream = stream.__cuda_stream__()[1]
     for name in ("cuda_stream", "ptr"):
         stream = getattr(stream, name, stream)
-    if isinstance(stream, bool) or not hasattr(stream, "__index__"):
-        raise TypeError(f"stream: type {type(stream).__name__}; expected a CUDA stream or its address")
-    if stream.__index__() < 0:
-        raise ValueError(f"stream: {stream.__index__()} is not an address")
-    return stream.__index__()
+    address = integer_of(stream, "stream", "a CUDA stream or its address")
+    if address < 0:
+        raise ValueError(f"stream: {address} is not an address")
+    return address
 
 
 def numpy_array(value, what):

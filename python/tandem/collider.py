@@ -317,7 +317,8 @@ class Collider:
             if len(rows) != len(self._deformable):
                 raise ValueError(f"{what}: {len(rows)} arrays for {len(self._deformable)} deformable bodies; give one array for each")
             vertices = dict(zip(self._deformable, rows))
-        for body in vertices:
+        by_number = {number_of(body, what, "body"): rows for body, rows in vertices.items()}
+        for body in by_number:
             if body not in self._deformable:
-                raise ValueError(f"{what}: {body!r} is not a deformable body (those are: {', '.join(map(str, self._deformable))})")
-        return {int(body): rows for body, rows in vertices.items()}
+                raise ValueError(f"{what}: {body} is not a deformable body (those are: {', '.join(map(str, self._deformable))})")
+        return by_number

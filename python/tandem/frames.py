@@ -10,6 +10,7 @@ from typing import Any, Iterable, Mapping, Sequence
 
 import numpy
 
+from .arguments import list_of, number_of
 from .arrays import POSE, host_array
 from .meshes import mesh_of
 
@@ -24,10 +25,10 @@ def write_frames(folder: str | os.PathLike[str], meshes: Sequence[Any], *, poses
     of deformable bodies are ignored. vertices: for each frame the world coordinates of all deformable bodies, a list of (n, 3) arrays in their
     order or {body: array}. Each is None where no body needs it. Numbers keep all bits of double; readers normalise quaternions. Raises ValueError or TypeError before
     anything is written, and OSError if the folder exists or cannot be written."""
-    parts = [mesh_of(mesh, f"meshes[{i}]") for i, mesh in enumerate(meshes)]
-    numbers = list(range(len(parts)) if bodies is None else bodies)
-    soft = sorted(set(deformable))
-    if not parts or any(not 0 <= number < len(parts) for number in numbers) or any(not 0 <= body < len(numbers) for body in soft):
+    parts = [mesh_of(mesh, f"meshes[{i}]") for i, mesh in enumerate(list_of(meshes, "meshes"))]
+    numbers = list(range(len(parts))) if bodies is None else _numbers(bodies, "bodies", "mesh")
+    soft = sorted(set(_numbers(deformable, "deformable", "body")))
+    if not parts or any(number >= len(parts) for number in numbers) or any(body >= len(numbers) for body in soft):
         raise ValueError(f"bodies, deformable: {numbers}, {soft}; there are {len(parts)} meshes and {len(numbers)} bodies, numbered from 0")
     rigid = [body for body in range(len(numbers)) if body not in soft]
     moves, states = _poses(poses, numbers, rigid), _states(vertices, [len(parts[number].vertices) for number in numbers], soft)
@@ -53,6 +54,10 @@ def write_frames(folder: str | os.PathLike[str], meshes: Sequence[Any], *, poses
     return scene
 
 
+def _numbers(values, what, of):
+    return [number_of(value, f"{what}[{i}]", of) for i, value in enumerate(list_of(values, what))]
+
+
 def _finite(rows, what):
     if not numpy.isfinite(rows).all():
         raise ValueError(f"{what}: is not finite")
@@ -73,7 +78,7 @@ def _states(vertices, counts, soft):
     frames = []
     for i, given in enumerate(vertices if vertices is not None and soft else ()):
         state = dict(given) if isinstance(given, Mapping) else dict(zip(soft, given)) if len(given) == len(soft) else {}
-        if sorted(state) != soft:
+        if sorted(number_of(body, f"vertices[{i}]", "body") for body in state) != soft:
             raise ValueError(f"vertices[{i}]: needs one array for each deformable body ({', '.join(map(str, soft))})")
         state = {body: _finite(host_array(rows, f"vertices[{i}] of body {body}", 3), f"vertices[{i}] of body {body}") for body, rows in state.items()}
         for body, rows in state.items():

@@ -4,7 +4,7 @@ import math
 
 import numpy
 
-from .arguments import body_pairs_of, list_of, number_of
+from .arguments import body_pairs_of, integer_of, list_of, number_of
 from .arrays import numpy_array, refuse_mapping
 
 
@@ -13,8 +13,8 @@ class Numbering:
     methods raise ValueError or TypeError, whose one-line message begins with `what`."""
     def __init__(self, bodies=0, worlds=None, deformable=()):
         self.bodies = bodies
-        self.worlds = None if worlds is None else number_of(worlds, "worlds", "world")
-        if self.worlds == 0 or self.count * bodies >= 2**31:
+        self.worlds = None if worlds is None else integer_of(worlds, "worlds", "the number of worlds")
+        if self.count < 1 or self.count * bodies >= 2**31:
             raise ValueError(f"worlds: {worlds} with {bodies} bodies each; give 1 or more, with fewer than 2^31 bodies in all")
         self.deformable = frozenset(world * bodies + body for world in range(self.count) for body in deformable)
         self.key = "body" if worlds is None else "(world, body)"
