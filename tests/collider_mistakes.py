@@ -96,6 +96,23 @@ class Mistakes(ColliderCase):
             self.assertNotIn("\n", text)
             self.assertIn(words, text)
 
+    def test_matrices_may_differ_from_rotations_by_rounding(self):
+        """By 1e-4 of a length: a scale of all axes or of one, or an angle between two axes, also after a rotation."""
+        collider, turn = self.collider(), numpy.array([[2, -1, 2], [2, 2, -1], [-1, 2, 2]]) / 3
+        expected = collider.count(numpy.tile(numpy.eye(4), (2, 1, 1)))
+        stretched = lambda by: numpy.eye(3) * (1 + by)
+        one_axis = lambda by: numpy.diag([1, 1 + by, 1])
+        sheared = lambda by: numpy.eye(3) + by * numpy.array([[0, 1, 0], [1, 0, 0], [0, 0, 0]])
+        for deformed in (stretched, one_axis, sheared):
+            for sign in (-1, 1):
+                for rotation in (numpy.eye(3), turn):
+                    matrices = numpy.tile(numpy.eye(4), (2, 1, 1))
+                    matrices[:, :3, :3] = rotation @ deformed(sign * 0.99e-4)
+                    self.assertGreater(collider.count(matrices), expected // 2)
+                    matrices[1, :3, :3] = rotation @ deformed(sign * 1.01e-4)
+                    with self.assertRaisesRegex(ValueError, "^poses: matrix 1 scales or shears"):
+                        collider.count(matrices)
+
     def written(self, meshes=None, **options):
         return tandem.write_frames(self.work / "refused", self.meshes if meshes is None else meshes, **options)
 

@@ -7,7 +7,7 @@ import numpy
 from .arguments import integer_of
 
 POSE = 7  # columns of a pose: tx ty tz qw qx qy qz
-LARGEST_ERROR = 1e-4  # largest difference from a rotation that counts as rounding
+LARGEST_ERROR = 1e-4  # largest relative change of a length that counts as rounding
 CPU, CUDA_HOST = 1, 3  # DLPack's numbers of memory types
 KINDS = {2: "CUDA's", 4: "OpenCL's", 7: "Vulkan's", 8: "Metal's", 10: "ROCm's", 13: "CUDA's managed", 14: "oneAPI's"}
 
@@ -82,10 +82,18 @@ def _rows_of_matrices(matrices, what):
             raise ValueError(f"{what}: matrix {int(wrong.argmax())} {message}")
     refuse(~numpy.isfinite(matrices).all(axis=(1, 2)), "is not finite")
     refuse((abs(matrices[:, 3] - [0, 0, 0, 1]) > 0).any(axis=1), "has another last row than 0 0 0 1; the translation is in the last column")
-    off = abs(turns @ turns.transpose(0, 2, 1) - numpy.eye(3)).max(axis=(1, 2), initial=0)
-    refuse(off > LARGEST_ERROR, "scales or shears; give a rotation and a translation, and scale the mesh")
+    refuse(_stretches(turns) > LARGEST_ERROR, "scales or shears; give a rotation and a translation, and scale the mesh")
     refuse(numpy.linalg.det(turns) < 0, "mirrors; give a rotation and a translation")
     return numpy.hstack((moves, _quaternions(turns)))
+
+
+def _stretches(turns):
+    """The largest relative change of a length by each of (n, 3, 3) matrices, from their singular values; 0 where it is below 3/4 of LARGEST_ERROR."""
+    off = abs(turns @ turns.transpose(0, 2, 1) - numpy.eye(3)).max(axis=(1, 2), initial=0)
+    doubtful = off > LARGEST_ERROR / 2  # lengths change by at most 3/2 of `off`, because their squares change by at most 3 times it
+    stretches = numpy.zeros(len(turns))
+    stretches[doubtful] = abs(numpy.linalg.svd(turns[doubtful], compute_uv=False) - 1).max(axis=1, initial=0)
+    return stretches
 
 
 def _quaternions(turns):
