@@ -180,6 +180,7 @@ Kernel Device::compile(const KernelSource& source, std::string_view entry, const
 
 void Device::launch(const Kernel& kernel, Grid grid, std::span<const Argument> arguments) {
     if (grid.groups == 0) return;
+    if (check_) check_();
     check_group_size(info(), kernel.facts(), grid.group_size);
     submit({.command = Command::launch,
             .groups = grid.groups,

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -259,6 +260,9 @@ public:
     /// core. Results do not depend on it. Other devices ignore it.
     void set_threads(std::uint32_t threads) { do_set_threads(threads); }
 
+    /// Each later launch first calls `check`, unless it is empty. What it throws ends the frame.
+    void set_check(std::function<void()> check) { check_ = std::move(check); }
+
     /// Starts or stops an attached profiler; does nothing when the backend has no such call.
     void profile(bool on) { do_profile(on); }
 
@@ -353,6 +357,7 @@ private:
     Clocks clocks_ = Clocks::off;
     bool waited_ = false;
     bool collecting_ = false; ///< within as_one(), on a device that collects
+    std::function<void()> check_;
     std::uint64_t submissions_ = 0;
 };
 

@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """collider_mistakes.py PROGRAM SOURCE: typical mistakes in calls of tandem.Collider each give one clear line; meshes of other
-libraries; pickling; colliders after fork."""
+libraries; pickling; colliders after fork; signals during a run."""
 import copy
 import os
 import pickle
+import signal
 import subprocess
 import sys
+import threading
 import types
 import unittest
 
@@ -185,6 +187,69 @@ class Meshes(ColliderCase):
             with self.assertRaisesRegex(TypeError, "cannot be pickled or copied"):
                 function(collider)
         self.assertRegex(repr(tandem.make_scene("pile:bodies=3")), "<tandem.Scene pile:.*: 3 bodies, [0-9]+ frames>")
+
+
+class Signals(ColliderCase):
+    """The thread that sends signals, and the work that doubles, make no demand on the speed of the machine."""
+    many = {"algorithm": "gproximity", "groups": 8, "local_queue": 4, "initial_items": 1, "idle_limit": 1, "output": "digest", "contact_rule": "none"}
+
+    def ends(self, collider, call):
+        """Whether a signal's handler ran within call(), and its exception ended the call."""
+        handled, done = [], threading.Event()
+
+        def handler(number, stack):
+            if handled:
+                return
+            try:
+                collider.reset()
+            except ValueError as error:
+                handled.append(str(error))
+                signal.default_int_handler(number, stack)
+
+        def send():
+            while not done.wait(0.01):
+                os.kill(os.getpid(), signal.SIGINT)
+        before = signal.signal(signal.SIGINT, handler)
+        sender = threading.Thread(target=send)
+        sender.start()
+        try:
+            call()
+        except KeyboardInterrupt:
+            self.assertIn("the collider is in a run that this signal interrupts", handled[0])
+            return True
+        finally:
+            done.set()
+            sender.join()
+            signal.signal(signal.SIGINT, before)
+        self.assertEqual(handled, [])
+        return False
+
+    def test_end_a_run_before_its_next_launch(self):
+        pairs = [(a, b) for b in range(512) for a in range(b)]
+        for device in DEVICES:
+            collider = self.collider(bodies=[0] * 512, device=device, **self.many)
+            few = collider.run(body_pairs=pairs[:1])
+            for call in (collider.run, collider.update):
+                with self.subTest(device=device, call=call.__name__):
+                    counts = (2 ** i for i in range(6, 18))
+                    self.assertTrue(any(self.ends(collider, lambda: call(body_pairs=pairs[:count])) for count in counts))
+                    self.assertEqual(collider.run(body_pairs=pairs[:1]).digest(), few.digest(), "usable afterwards")
+
+    def test_end_tune(self):
+        collider = tandem.Collider(self.meshes, algorithm="auto")
+        self.assertTrue(any(self.ends(collider, lambda: collider.tune(POSES, seconds=2.0 ** i)) for i in range(-3, 4)))
+        self.assertEqual(collider.run(POSES).digest(), tandem.Collider(self.meshes, collider.algorithm, **collider.settings).run(POSES).digest())
+
+    def test_answers_end_while_another_thread_runs(self):
+        """A run waits for the interpreter's lock, which the thread has in which an answer ends."""
+        pairs = [(a, b) for b in range(512) for a in range(b)]
+        collider = self.collider(bodies=[0] * 512, **self.many)
+        for count in (2 ** i for i in range(6, 15)):
+            answers = [collider.run(body_pairs=pairs[:1]) for _ in range(3)]
+            runner = threading.Thread(target=collider.run, kwargs={"body_pairs": pairs[:count]})
+            runner.start()
+            answers.clear()
+            runner.join()
 
 
 class Fork(ColliderCase):

@@ -27,7 +27,7 @@ Answer::~Answer() {
         return;
     }
     // The buffers return to the device's pool, which other threads use under this lock.
-    const auto lock = collider_->lock();
+    const auto lock = collider_->lock_at_end();
     on_device_.reset();
     result_.parts.clear();
     frame_.reset();

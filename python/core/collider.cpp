@@ -7,6 +7,7 @@
 #include "backends/cuda/cuda_device.h"
 #include "base/error.h"
 #include "python/core/device_world.h"
+#include "python/core/signals.h"
 
 #include <algorithm>
 #include <charconv>
@@ -92,9 +93,33 @@ Collider::~Collider() {
     static_cast<void>(new auto(std::move(backends_)));
 }
 
-std::unique_lock<std::mutex> Collider::lock() {
+std::unique_lock<std::recursive_mutex> Collider::lock() {
     if (has_runtime(devices_)) check_process(name_of(devices_));
-    return std::unique_lock(mutex_);
+    std::unique_lock own(mutex_);
+    if (runs_)
+        throw InputError("the collider is in a run that this signal interrupts; use it and its answers after "
+                         "the run");
+    return own;
+}
+
+/// The thread that has the lock may be waiting for the interpreter's.
+std::unique_lock<std::recursive_mutex> Collider::lock_at_end() {
+    std::unique_lock own(mutex_, std::try_to_lock);
+    if (own) return own;
+    const nanobind::gil_scoped_release released;
+    own.lock();
+    return own;
+}
+
+template<class Work>
+auto Collider::with_signals(const Work& work) {
+    struct Running {
+        bool& runs;
+        explicit Running(bool& flag) : runs(flag) { runs = true; }
+        ~Running() { runs = false; }
+    };
+    const Running running(runs_);
+    return Signals(devices_).within(work);
 }
 
 void Collider::open_devices(const ColliderOptions& options) {
@@ -207,11 +232,13 @@ oracle::World Collider::world_of(std::uint64_t number) const {
 Run Collider::run(const Input& input) {
     const auto own = lock();
     check(input);
-    begin_at(input);
-    if (input.on_device) return run_frames(device_frames(input), input.body_pairs);
-    auto run = run_frames(host_frames(input), input.body_pairs);
-    run.frame = host_input_->last();
-    return run;
+    return with_signals([&] {
+        begin_at(input);
+        if (input.on_device) return run_frames(device_frames(input), input.body_pairs);
+        auto run = run_frames(host_frames(input), input.body_pairs);
+        run.frame = host_input_->last();
+        return run;
+    });
 }
 
 template<class Frames>
@@ -230,9 +257,11 @@ std::vector<Trial> Collider::tune(const Input& input, double seconds) {
         throw InputError(
             fmt::format("tune: algorithm {} was named; make the collider with algorithm=auto", algorithm_));
     check(input);
-    begin_at(input);
-    return input.on_device ? choose_for(device_frames(input), seconds)
-                           : choose_for(host_frames(input), seconds);
+    return with_signals([&] {
+        begin_at(input);
+        return input.on_device ? choose_for(device_frames(input), seconds)
+                               : choose_for(host_frames(input), seconds);
+    });
 }
 
 void Collider::reset() {

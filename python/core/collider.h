@@ -46,8 +46,8 @@ public:
     Collider& operator=(const Collider&) = delete;
     ~Collider();
 
-    /// Finds the pairs of a frame, with motion=linear up to its successor. Throws InputError, or DeviceError
-    /// also in a forked process.
+    /// Finds the pairs of a frame, with motion=linear up to its successor. Throws InputError, DeviceError
+    /// also in a forked process, or what the handler of a signal raises (signals.h).
     Run run(const Input& input);
     /// Algorithm auto: times the candidates on that frame and selects the fastest for later runs. Throws
     /// InputError for another algorithm.
@@ -74,8 +74,11 @@ public:
     /// Keeps the Python object that owns the stream alive as long as the devices.
     void set_stream_owner(nanobind::object owner) { stream_owner_ = std::move(owner); }
     /// Guards every use of the devices, also by answers. Release the interpreter's lock before the call.
-    /// Throws DeviceError in a forked process, unless all devices are the host.
-    std::unique_lock<std::mutex> lock();
+    /// Throws DeviceError in a forked process, unless all devices are the host, and InputError in a signal's
+    /// handler that a run of this thread has called.
+    std::unique_lock<std::recursive_mutex> lock();
+    /// The same for the end of an answer, at any time: with the interpreter's lock, also within a run.
+    std::unique_lock<std::recursive_mutex> lock_at_end();
     /// Whether the devices are lost, because a fork made this process. Objects in their memory must then
     /// leak.
     bool is_lost() const { return is_forked() && has_runtime(devices_); }
@@ -98,6 +101,9 @@ private:
     std::optional<std::vector<BodyPair>> world_pairs(const FrameInput& frames) const;
     /// The same by a download of the frames. Throws InputError as the session does for them.
     std::optional<std::vector<BodyPair>> world_pairs(const DeviceFrameInput& frames) const;
+    /// The result of `work`, which a signal may end.
+    template<class Work>
+    auto with_signals(const Work& work);
     template<class Frames>
     FrameResult run_frame(Session& session, const Frames& frames,
                           const std::optional<std::vector<BodyPair>>& given);
@@ -123,7 +129,8 @@ private:
     std::unique_ptr<Session> session_; ///< null until an algorithm is chosen
     std::optional<Settings> prepared_; ///< of the session; none of a chosen one
     std::optional<Frame> first_;       ///< the first frame, if it determines the origin
-    std::mutex mutex_;
+    std::recursive_mutex mutex_;
+    bool runs_ = false; ///< a call works on the devices; under mutex_
 };
 
 /// Adds Collider and algorithms().

@@ -148,7 +148,8 @@ class Collider:
         decision="exact" or contact_rule="none".
 
     Raises ValueError or TypeError for invalid arguments, tandem.DeviceError if a device fails; messages are one line. Calls release the
-    interpreter's lock. Calls of one collider and of its answers wait for each other.
+    interpreter's lock. Calls of one collider and of its answers wait for each other. Ctrl-C ends run(), update() and tune() before their next launch on the device, by a KeyboardInterrupt, as does any
+    exception of another signal's handler; the collider remains usable.
     """
 
     # The slash makes `self` positional, because a setting has this name as well.
