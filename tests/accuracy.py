@@ -115,9 +115,11 @@ class Accuracy(Case):
         out = self.work / "hard.jsonl"
         status, text, errors = tandem("accuracy", "hard:all:pairs=4,together=2", "--device", "host", "--set", "k=8", "--set", "rounding=published",
                                       "--repeat", 1, "--truth-contacts", 1, "--quiet", "--out", out)
-        self.assertEqual((status, errors), (0, []), text)
-        difficulties = {}
-        for record in self.records(out):
+        self.assertEqual(status, 0, text)
+        records, difficulties = self.records(out), {}
+        self.assertEqual([line.split(": nothing can meet: there is one body, which setting self=off")[0] for line in errors],
+                         [f"tandem: scene {record['scene']['name']}" for record in records if record["scene"]["bodies"] == 1])
+        for record in records:
             family, rest = record["scene"]["key"].removeprefix("hard:").split(":")
             difficulties.setdefault(family, []).append(float(rest.split("difficulty=")[1].split(",")[0]))
         self.assertGreater(len(difficulties), 38)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """collider_mistakes.py PROGRAM SOURCE: typical mistakes in calls of tandem.Collider each give one clear line; meshes of other
-libraries; pickling; colliders after fork; signals during a run."""
+libraries; pickling; colliders after fork; warnings where nothing can meet; signals during a run."""
 import copy
 import os
 import pickle
@@ -11,6 +11,7 @@ import sys
 import threading
 import types
 import unittest
+import warnings
 
 import meshio
 import numpy
@@ -187,6 +188,32 @@ class Meshes(ColliderCase):
             with self.assertRaisesRegex(TypeError, "cannot be pickled or copied"):
                 function(collider)
         self.assertRegex(repr(tandem.make_scene("pile:bodies=3")), "<tandem.Scene pile:.*: 3 bodies, [0-9]+ frames>")
+
+
+class NothingMeets(ColliderCase):
+    def warned_of(self, *arguments, **options):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            tandem.Collider(*arguments or [self.meshes], **options)
+        for one in caught:
+            self.assertEqual((one.category, os.path.basename(one.filename)), (UserWarning, "collider_mistakes.py"))
+        return [str(one.message) for one in caught]
+
+    def test_gives_one_warning(self):
+        one = [self.meshes[0]]
+        for words, arguments, options in (
+                ("there is one body, which setting self=off does not pair with itself; choose self=on, or add a body", [one], {}),
+                ("there is one body, which setting self=deformable does not pair with itself", [one], {"self_collision": "deformable"}),
+                ("there is one body, which setting self=off", [one], {"worlds": 3, "deformable": True}),
+                ("there is one body, which setting self=off", [one], {"algorithm": "auto"}),
+                ("groups, meets and never_meet keep all bodies apart", [], {"never_meet": [(0, 1), (1, 0)]}),
+                ("groups, meets and never_meet keep all bodies apart", [], {"body_groups": [[0], [1]], "meets": [[0], [1]], "worlds": 2})):
+            with self.subTest(words, **options):
+                text, = self.warned_of(*arguments, **options)
+                self.assertTrue(text.startswith("nothing can meet: " + words), text)
+        for arguments, options in (([one], {"self_collision": True}), ([one], {"self_collision": "deformable", "deformable": True}), ([], {}), ([one], {"bodies": [0, 0]}),
+                                   ([], {"never_meet": [(0, 0)]}), ([], {"worlds": 2})):
+            self.assertEqual(self.warned_of(*arguments, **options), [])
 
 
 class Signals(ColliderCase):

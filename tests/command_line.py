@@ -155,7 +155,7 @@ class CommandLine(Case):
         # Combinations that must be accepted: such options beside others, and where they have an effect.
         for arguments in (("--truth", "contacts", "--truth-contacts", 3), ("--threads", 1, "--set", "k=6"), ("--seconds", 1, "--noise", "1%"),
                           ("--algorithm", "chunked,auto", "--choose-afresh", "--choose-seconds", 1), ("--set", "threads=1,2")):
-            status, out, errors = tandem("run", "--mesh", self.good, "--device", "host", *arguments, "--dry-run")
+            status, out, errors = tandem("run", "--mesh", self.good, "--mesh", self.good, "--device", "host", *arguments, "--dry-run")
             self.assertEqual((status, errors), (0, []), out)
 
     def test_descriptions_of_algorithms(self):

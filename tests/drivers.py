@@ -110,7 +110,7 @@ class Drivers(Case):
         self.assertRegex(driver["problem"], r"^platform 'Portable Computing Language' has no device: its kernel cache /proc/x cannot be written \(.+\); set POCL_CACHE_DIR")
         self.bad("kernel cache /proc/x cannot be written", "run", "plates", "--device", "opencl:0",
                  environment={"OCL_ICD_VENDORS": str(self.vendors), "POCL_CACHE_DIR": "/proc/x"})
-        status, out, errors = tandem("run", "--mesh", self.good, "--device", "host", environment={"POCL_CACHE_DIR": "/proc/x"})
+        status, out, errors = tandem("run", "--mesh", self.good, "--mesh", self.good, "--device", "host", environment={"POCL_CACHE_DIR": "/proc/x"})
         self.assertEqual((status, errors), (0, []), out)
 
 

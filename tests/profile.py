@@ -41,7 +41,7 @@ class Profile(Case):
         super().setUpClass()
         # The ceilings of another machine with this one's devices, because measuring takes long.
         cls.known, recorded = cls.work / "known-ceilings.jsonl", cls.work / "devices.jsonl"
-        status, text, errors = tandem("run", "--mesh", cls.good, "--algorithm", "tiled", "--device", "host,opencl:0", "--repeat", 1, "--truth", "none", "--no-check",
+        status, text, errors = tandem("run", "--mesh", cls.good, "--mesh", cls.good, "--algorithm", "tiled", "--device", "host,opencl:0", "--repeat", 1, "--truth", "none", "--no-check",
                                       "--out", recorded)
         assert (status, errors) == (0, []), (text, errors)
         other = json.loads((SOURCE / "results/h200/ceilings.jsonl").read_text().splitlines()[0])

@@ -133,7 +133,7 @@ class Recordings(Case):
         self.assertEqual(counted, len(dump.read_text().splitlines()) - 1)
         self.assertGreater(counted, 100)
         # An exported mesh can be read again.
-        status, text, errors = tandem("run", "--mesh", folder / "bodies_000002.vtu", "--profile", 1, "--device", "host", "--algorithm", "chunked")
+        status, text, errors = tandem("run", *["--mesh", folder / "bodies_000002.vtu"] * 2, "--profile", 1, "--device", "host", "--algorithm", "chunked")
         self.assertEqual((status, errors), (0, []), text)
         self.assertEqual(glb.read_bytes()[:8], b"glTF\x02\0\0\0")
         self.assertEqual(struct.unpack("<I", glb.read_bytes()[8:12])[0], glb.stat().st_size)

@@ -187,7 +187,7 @@ int check_command(const RunOptions& options) {
                           scenes);
     const auto job = open_job(options, filtered(plan_check(request, devices), options));
     RecordFile file(options.out);
-    print_scene(job.scene, job.range);
+    print_scene(job);
     const Progress progress(options.quiet);
     std::size_t broken = 0;
     print_matrix_header();

@@ -323,7 +323,7 @@ int Run::go() {
         open_files();
         leave_out_finished(*job);
         if (job->cells.empty()) continue;
-        print_scene(job->scene, job->range);
+        print_scene(*job);
         code = std::max(code, work_on(*job));
         if (must_stop()) break;
     }
@@ -337,7 +337,7 @@ int Run::list_all() {
             const auto job = open(group, print_skipped);
             open_files();
             leave_out_finished(*job);
-            print_scene(job->scene, job->range);
+            print_scene(*job);
             list(*job);
         } catch (const InputError& error) {
             if (all_.groups.size() == 1) throw;

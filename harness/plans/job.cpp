@@ -2,7 +2,9 @@
 #include "harness/plans/cache_folder.h"
 #include "harness/plans/job.h"
 
+#include "algorithms/bodies/nothing_meets.h"
 #include "algorithms/bounds/geometry.h"
+#include "algorithms/parameters/table.h"
 #include "harness/plans/inputs.h"
 #include "harness/sampling/isolation/isolated_sampler.h"
 #include "harness/plans/key.h"
@@ -16,6 +18,7 @@
 #include <fmt/format.h>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 namespace tandem {
 
@@ -174,9 +177,15 @@ std::string scene_text(const Scene& scene, const FrameRange& range) {
     return text;
 }
 
-void print_scene(const Scene& scene, const FrameRange& range) {
-    put_text(scene_text(scene, range));
-    report_findings(scene);
+void print_scene(const Job& job) {
+    put_text(scene_text(job.scene, job.range));
+    report_findings(job.scene);
+    std::set<std::string> reasons;
+    for (const auto& cell : job.cells)
+        reasons.insert(why_nothing_meets(job.scene, cell.settings[parameters::self]));
+    reasons.erase(std::string());
+    for (const auto& reason : reasons)
+        print_message("tandem: scene {}: nothing can meet: {}\n", visible(job.scene.name), reason);
 }
 
 bool misses_against_its_promise(const Measurement& m) {

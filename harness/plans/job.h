@@ -65,7 +65,8 @@ std::filesystem::path checks_folder(const RunOptions& options);
 
 /// One line that describes the scene, one for inverted tetrahedra and one for flawed ones, if there are any.
 std::string scene_text(const Scene& scene, const FrameRange& range);
-void print_scene(const Scene& scene, const FrameRange& range);
+/// Prints it, and on standard error what its meshes have, and why nothing can meet in some of the cells.
+void print_scene(const Job& job);
 
 /// Whether a cell missed pairs although its rounding is safe or directed. These roundings miss no pair that
 /// touches or overlaps (theorems of algorithms/bounds); other roundings guarantee nothing.

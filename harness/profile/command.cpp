@@ -164,7 +164,7 @@ void Profiling::end(const Outcome& outcome, const Sampling& sampling) {
 int Profiling::go() {
     file_.emplace(run_.out);
     trace_.emplace(run_.trace);
-    print_scene(job_->scene, job_->range);
+    print_scene(*job_);
     refuse_unpreparable();
     report_cache_folder();
     find_ceilings();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "python/core/collider.h"
 
+#include "algorithms/bodies/nothing_meets.h"
 #include "algorithms/bodies/origin.h"
 #include "algorithms/bodies/range.h"
 #include "algorithms/parameters/table.h"
@@ -40,6 +41,16 @@ Scene scene_of(std::vector<Mesh> meshes, const ColliderOptions& options) {
         scene.never_meet.push_back({std::min(a, b), std::max(a, b)});
     std::ranges::sort(scene.never_meet);
     return scene;
+}
+
+/// The bodies of the first of several worlds, with their filters.
+Scene one_world(const Scene& scene, std::size_t worlds) {
+    Scene first;
+    first.bodies.assign(scene.bodies.begin(),
+                        scene.bodies.begin() + static_cast<std::ptrdiff_t>(scene.bodies.size() / worlds));
+    for (const auto& pair : scene.never_meet)
+        if (pair[1] < first.bodies.size()) first.never_meet.push_back(pair);
+    return first;
 }
 
 /// Candidates of algorithm auto, by the rules of `tandem run`.
@@ -162,6 +173,7 @@ void Collider::prepare(const ColliderOptions& options) {
     if (options.worlds > 1)
         world_pairs_.emplace(scene_, geometry_of(settings), settings[parameters::broad],
                              settings[parameters::self], options.worlds);
+    nothing_meets_ = why_nothing_meets(one_world(scene_, options.worlds), settings[parameters::self]);
     host_input_.emplace(scene_, precision_);
     check_range(scene_, rest_frame(scene_), precision_);
     if (traversal == nullptr) return;

@@ -83,6 +83,8 @@ public:
     /// leak.
     bool is_lost() const { return is_forked() && has_runtime(devices_); }
     const Scene& scene() const { return scene_; }
+    /// Why nothing can meet in any frame, for messages; empty if something may.
+    const std::string& nothing_meets() const { return nothing_meets_; }
 
 private:
     void open_devices(const ColliderOptions& options);
@@ -116,7 +118,7 @@ private:
     std::vector<BackendReport> backends_; ///< declared first, so that devices outlive their buffers
     DeviceGroup devices_;
     Scene scene_;
-    std::string algorithm_;
+    std::string algorithm_, nothing_meets_;
     std::vector<Cell> candidates_; ///< candidates of algorithm auto
     Precision precision_ = Precision::fp32;
     Motion motion_ = Motion::none;

@@ -152,6 +152,8 @@ void bind_collider(nb::module_& module) {
         .def_prop_ro("settings", &Collider::setting_texts, released)
         .def_prop_ro("devices", &device_names)
         .def_prop_ro("queue", &queue)
+        .def_prop_ro("nothing_meets", &Collider::nothing_meets,
+                     "Why nothing can meet in any frame, or an empty text.")
         .def_prop_ro(
             "addresses", &Collider::addresses, released,
             "Addresses from which kernels read the last frame that was in memory of the device: poses "

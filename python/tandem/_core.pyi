@@ -198,6 +198,10 @@ class Collider:
     def queue(self) -> int: ...
 
     @property
+    def nothing_meets(self) -> str:
+        """Why nothing can meet in any frame, or an empty text."""
+
+    @property
     def addresses(self) -> list[int]:
         """
         Addresses from which kernels read the last frame that was in memory of the device: poses (0 for none), then vertices of each deformable body. Those of its successor follow.

@@ -11,6 +11,7 @@ from .arguments import bits_of_bodies, body_pairs_of, flags_of, list_of, lists_o
 from .arrays import stream_address
 from .changes import changes_of
 from .meshes import mesh_of
+from .telling import warn
 from .worlds import Numbering
 
 
@@ -147,8 +148,9 @@ class Collider:
         precision="double", output="count". motion="linear" finds pairs between a frame and its successor (run()); it needs
         decision="exact" or contact_rule="none".
 
-    Raises ValueError or TypeError for invalid arguments, tandem.DeviceError if a device fails; messages are one line. Calls release the
-    interpreter's lock. Calls of one collider and of its answers wait for each other. Ctrl-C ends run(), update() and tune() before their next launch on the device, by a KeyboardInterrupt, as does any
+    Raises ValueError or TypeError for invalid arguments, tandem.DeviceError if a device fails; messages are one line. A UserWarning tells where
+    nothing can meet, such as one body without self_collision. Calls release the interpreter's lock. Calls of one collider and of its answers
+    wait for each other. Ctrl-C ends run(), update() and tune() before their next launch on the device, by a KeyboardInterrupt, as does any
     exception of another signal's handler; the collider remains usable.
     """
 
@@ -181,6 +183,8 @@ class Collider:
         options = _core.ColliderOptions(mesh_of_body * count, flags * count, algorithm, preset, device, texts, filters * count,
                                         numbering.in_all_worlds(apart), count, address)
         self._core = _core.Collider(all_meshes, options, stream)
+        if self._core.nothing_meets:
+            warn(f"nothing can meet: {self._core.nothing_meets}")
         self._arguments = {"algorithm": algorithm, "device": device, "bodies": mesh_of_body, "deformable": self._deformable, "body_groups": lists_of(body_groups),
                            "meets": lists_of(meets), "never_meet": apart, "duplicates": duplicates, "weld": weld, "worlds": numbering.worlds, "preset": preset, **texts}
 

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import os
-import sys
-import warnings
 from typing import Any
 
 import numpy
@@ -12,6 +10,7 @@ import numpy
 from . import _core
 from ._core import Mesh, Scene
 from .arrays import host_array
+from .telling import warn
 
 # Types of cells by their name in meshio and by their number in VTK.
 TETRAHEDRON = ("tetra", 10)
@@ -29,12 +28,9 @@ def _reading(duplicates, weld, corners=False, only_tetrahedra=False):
 
 
 def _warned(mesh):
-    """Warns, at the caller's line, of what the mesh has beside sound tetrahedra, and returns it."""
+    """Warns of what the mesh has beside sound tetrahedra, and returns it."""
     if mesh.findings:
-        frame, level = sys._getframe(1), 2
-        while frame.f_back is not None and frame.f_globals.get("__package__") == __package__:
-            frame, level = frame.f_back, level + 1
-        warnings.warn(f"mesh {mesh.name}: {mesh.findings}", stacklevel=level)
+        warn(f"mesh {mesh.name}: {mesh.findings}")
     return mesh
 
 

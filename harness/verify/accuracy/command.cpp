@@ -144,7 +144,7 @@ int measure_scene(const RunOptions& options, const std::vector<Cell>& cells, Rec
     report_findings(scene);
     if (own.frames.empty()) own.frames = middle_frames(scene);
     const Job job(std::move(scene), own, cells);
-    print_scene(job.scene, job.range);
+    print_scene(job);
     const auto cache = checks_folder(options);
     References references(job.scene, job.range, cache);
     Truths truths(job.scene, job.range, TruthAmount::contacts, options.truth_contacts, cache);
