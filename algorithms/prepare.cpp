@@ -3,8 +3,10 @@
 #include "algorithms/bodies/check_input.h"
 #include "algorithms/bodies/frame_on_device.h"
 #include "algorithms/bodies/origin.h"
+#include "algorithms/bodies/shift.h"
 #include "algorithms/pipeline.h"
 #include "algorithms/published/published_session.h"
+#include "algorithms/distributed/local_scene.h"
 #include "algorithms/distributed/rank_session.h"
 #include "algorithms/resident_session.h"
 #include "algorithms/distributed/split_session.h"
@@ -115,11 +117,16 @@ FrameResult Session::run_among(const FrameInput& input, std::optional<std::span<
 
 FrameResult Session::run_checked(const FrameInput& input,
                                  std::optional<std::span<const BodyPair>> body_pairs) {
-    if (origin_ == Eigen::Vector3d::Zero()) return finished(do_run(input, body_pairs));
-    const auto frame = counted_from(origin_, input.frame);
+    if (origin_ == Eigen::Vector3d::Zero() && !centred_) return finished(do_run(input, body_pairs));
+    const auto frame = as_on_devices(input.frame);
     if (input.next == nullptr) return finished(do_run(frame, body_pairs));
-    const auto next = counted_from(origin_, *input.next);
+    const auto next = as_on_devices(*input.next);
     return finished(do_run({frame, &next}, body_pairs));
+}
+
+Frame Session::as_on_devices(const Frame& frame) const {
+    auto counted = counted_from(origin_, frame);
+    return centred_ ? shifted(*centred_, std::move(counted)) : counted;
 }
 
 FrameResult Session::run_among(const DeviceFrameInput& input,
@@ -141,6 +148,8 @@ FrameResult Session::run_among(const DeviceFrameInput& input,
 FrameResult Session::finished(FrameResult result) const {
     for (auto* device : devices()) device->check_guards();
     result.origin = {origin_.x(), origin_.y(), origin_.z()};
+    if (centred_)
+        for (auto& part : result.parts) part = owning_part(std::move(part), centred_);
     return result;
 }
 
@@ -220,12 +229,16 @@ std::unique_ptr<Session> Traversal::prepare(std::span<Device* const> devices, co
     std::vector<Settings> fitting;
     for (const auto* device : devices) fitting.push_back(fitted(settings, device->info(), &scene));
     auto& device = *devices.front();
-    auto session = devices.size() > 1 ? split_session(*this, devices, scene, fitting)
+    const auto origin = geometry_of(settings).origin;
+    const auto moved = centred(scene, origin);
+    const auto& on_devices = moved ? *moved : scene;
+    auto session = devices.size() > 1 ? split_session(*this, devices, on_devices, fitting)
                    : is_published(settings)
-                       ? published_session(*this, device, scene, fitting.front())
-                       : std::make_unique<ResidentSession>(*this, device, scene, fitting.front());
-    session->origin_ = origin_of(scene, geometry_of(settings).origin);
+                       ? published_session(*this, device, on_devices, fitting.front())
+                       : std::make_unique<ResidentSession>(*this, device, on_devices, fitting.front());
+    session->origin_ = origin_of(scene, origin);
     session->scene_ = &scene;
+    session->centred_ = moved;
     return session;
 }
 
@@ -245,10 +258,13 @@ std::unique_ptr<Session> Traversal::prepare(Device& device, const Scene& scene, 
                         settings.text("broad")));
     if (!scene.frame)
         throw InputError("ranks of a job divide the bodies of frame 0, and Scene::frame is not set; set it");
-    std::unique_ptr<Session> session =
-        std::make_unique<RankSession>(*this, device, scene, fitted(settings, device.info(), &scene), ranks);
-    session->origin_ = origin_of(scene, geometry_of(settings).origin);
+    const auto origin = geometry_of(settings).origin;
+    const auto moved = centred(scene, origin);
+    std::unique_ptr<Session> session = std::make_unique<RankSession>(
+        *this, device, moved ? *moved : scene, fitted(settings, device.info(), &scene), ranks);
+    session->origin_ = origin_of(scene, origin);
     session->scene_ = &scene;
+    session->centred_ = moved;
     return session;
 }
 

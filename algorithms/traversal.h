@@ -103,7 +103,7 @@ public:
     const Bodies* bodies() const { return do_bodies(); }
 
 private:
-    friend class Traversal; // sets scene_ and origin_
+    friend class Traversal; // sets scene_, centred_ and origin_
     /// Called in every run, because sessions may share a device with other settings.
     void set_threads() const;
     void check_pairs(std::optional<std::span<const BodyPair>> body_pairs) const;
@@ -112,6 +112,8 @@ private:
     FrameResult run_among(const FrameInput& input, std::optional<std::span<const BodyPair>> body_pairs);
     FrameResult run_among(const DeviceFrameInput& input, std::optional<std::span<const BodyPair>> body_pairs);
     FrameResult run_checked(const FrameInput& input, std::optional<std::span<const BodyPair>> body_pairs);
+    /// The frame as the devices have it: relative to the origin, and to the middles of centred meshes.
+    Frame as_on_devices(const Frame& frame) const;
     /// Completes a frame's result, and checks the devices' guards.
     FrameResult finished(FrameResult result) const;
 
@@ -129,7 +131,8 @@ private:
     virtual const Bodies* do_bodies() const { return nullptr; }
 
     Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
-    const Scene* scene_ = nullptr; ///< the argument of prepare()
+    const Scene* scene_ = nullptr;         ///< the argument of prepare()
+    std::shared_ptr<const Scene> centred_; ///< what the devices have in its place; null: the same
 };
 
 /// A named counter of an algorithm's work.

@@ -56,6 +56,9 @@ struct Scene {
     MeshReading reading{};    ///< how its meshes were read and connected
     /// In a subscene, the number of each body in the whole scene, ascending. Empty in a whole scene.
     std::vector<std::uint32_t> numbers{};
+    /// In a centred scene (algorithms/bodies/shift.h), what was subtracted from the vertices of each mesh.
+    /// Empty in other scenes.
+    std::vector<Eigen::Vector3d> shifts{};
 };
 
 /// The number of a body in the whole scene, which results use.

@@ -95,6 +95,23 @@ class Answers(Case):
                 for row in rows:
                     self.assertAlmostEqual(sum(float(x) ** 2 for x in row[8:11]), 1, places=5)
 
+    def test_dumps_of_meshes_with_map_coordinates(self):
+        """Single precision cannot represent their vertices. With origin=auto it represents the centred meshes."""
+        parts = [bar(4, (0, 0, 0)), bar(3, (0.5, 0.25, 0.375))]
+        expected = [(0, 0, a, 1, b) for a, b in overlapping(*parts)]
+        far = (6452399.0, 1872182.375, 0)
+        files = [gmsh(self.work / f"far{i}.msh", [tuple(map(sum, zip(point, far))) for point in points], tets) for i, (points, tets) in enumerate(parts)]
+        found = {}
+        for origin in ("auto", "world"):
+            pairs, out = self.work / f"{origin}.p", self.work / f"{origin}.jsonl"
+            status, text, errors = tandem("run", "--mesh", files[0], "--mesh", files[1], "--set", "k=6", "--set", f"origin={origin}", "--algorithm", "tiled",
+                                          "--repeat", 1, "--dump-pairs", pairs, "--out", out)
+            self.assertEqual((status, errors), (0, []), text)
+            found[origin] = self.dump(pairs, "frame,body_a,tet_a,body_b,tet_b")[1]
+            self.assertIn("0 missing, 0 extra, contacts equal", text)
+        self.assertEqual(found["auto"], expected)
+        self.assertNotEqual(found["world"], expected)
+
     def test_dumps_of_several_frames(self):
         pairs, contacts, out = (self.work / name for name in ("p.csv", "c.csv", "frames.jsonl"))
         status, text, errors = tandem("run", "plates", "--frames", "20:21", "--repeat", 1, "--algorithm", "gproximity",

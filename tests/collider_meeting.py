@@ -115,6 +115,25 @@ class Meeting(ColliderCase):
         with self.assertRaisesRegex(ValueError, "overwritten by a later run"):
             answer.meeting()
 
+    def test_meshes_with_map_coordinates(self):
+        """Millions of cells from their own origin. Single precision cannot represent such vertices, but it represents the centred mesh."""
+        far = numpy.array([6452399.0, 1872182.375, 0])
+        shifted = [(points + far, tetrahedra) for points, tetrahedra in self.meshes]
+        right = self.collider(precision="double").meeting(POSES[:1] * 2).tolist()
+        self.assertGreater(len(right), 50)
+        turned = [[0, 0, 0, 0.5, 0.5, 0.5, 0.5]] * 2
+        for device in DEVICES:
+            for name, meshes, poses, options in (("mesh", shifted, POSES[:1] * 2, {}), ("mesh, turned", shifted, turned, {}), ("mesh, and back by the pose", shifted, [[*-far, 1, 0, 0, 0]] * 2, {}),
+                                                 ("pose", self.meshes, [[*far, 1, 0, 0, 0]] * 2, {}), ("deformable", shifted, None, {"deformable": True})):
+                with self.subTest(device=device, far=name):
+                    collider = self.collider(meshes, device=device, origin="auto", contact_rule="sat", decision="recheck", **options)
+                    answer = collider.run(poses)
+                    self.assertEqual(answer.meeting().tolist(), right)
+                    self.assertEqual({tuple(pair) for pair in answer.contacts().pairs}, set(map(tuple, right)))
+                    if not options:
+                        self.assertEqual(tandem.Answer(collider._core.run_device_input(numpy.array(poses, float), [])).meeting().tolist(), right)
+        self.assertNotEqual(self.collider(shifted, origin="world").meeting(POSES[:1] * 2).tolist(), right, "vertices are rounded where they are")
+
     def test_body_pairs_of_the_caller(self):
         three = [self.meshes[0], self.meshes[1], self.meshes[0]]
         poses = [*POSES, [0.25, 0, 0, 1, 0, 0, 0]]

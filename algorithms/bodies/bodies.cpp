@@ -4,6 +4,7 @@
 #include "algorithms/bodies/arc.h"
 #include "algorithms/bodies/drift.h"
 #include "algorithms/bodies/pack.h"
+#include "algorithms/bodies/shift.h"
 #include "backends/upload.h"
 
 #include <algorithm>
@@ -133,9 +134,13 @@ std::vector<std::uint32_t> Bodies::positions_of(std::size_t body,
 
 std::vector<std::byte> Bodies::shared_vertices() const {
     std::vector<std::byte> bytes;
-    const auto pack = geometry_.motion == Motion::linear ? pack_vertices_with_distances : pack_vertices;
-    for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh)
-        pack(bytes, geometry_, meshes_[mesh], scene_.meshes[mesh].vertices);
+    for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh) {
+        const auto& vertices = scene_.meshes[mesh].vertices;
+        if (geometry_.motion == Motion::linear)
+            pack_vertices_with_distances(bytes, geometry_, meshes_[mesh], vertices, shift_in(scene_, mesh));
+        else
+            pack_vertices(bytes, geometry_, meshes_[mesh], vertices);
+    }
     return bytes;
 }
 
@@ -187,7 +192,8 @@ std::size_t Bodies::bytes() const {
 std::array<double, 3> Bodies::drift_of(const Frame& frame, std::size_t body) const {
     if (geometry_.placement == Placement::rounded) return {};
     if (scene_.bodies[body].deformable) return drift_bound(frame.deformed[body], geometry_.precision);
-    return drift_bound(frame.poses[body], mesh_reaches_[scene_.bodies[body].mesh], geometry_.precision);
+    const auto mesh = scene_.bodies[body].mesh;
+    return drift_bound(frame.poses[body], mesh_reaches_[mesh], geometry_.precision, shift_in(scene_, mesh));
 }
 
 /// The arcs of all bodies; empty with motion=none. Deformable bodies move on straight paths.

@@ -20,18 +20,20 @@ void append(std::vector<std::byte>& out, const Numbers& numbers) {
     }
 }
 
-/// The distance of a rounded vertex from the origin, rounded up.
+/// The distance of a rounded vertex from the mesh's own origin, which is at -shift, rounded up.
 template<class Real>
-Real distance_of(const std::array<Real, 4>& row) {
+Real distance_of(const std::array<Real, 4>& row, const Eigen::Vector3d& shift) {
     constexpr double upwards = 1 + 0x1p-20;
-    return static_cast<Real>(
-        std::hypot(static_cast<double>(row[0]), static_cast<double>(row[1]), static_cast<double>(row[2]))
-        * upwards);
+    return static_cast<Real>(std::hypot(static_cast<double>(row[0]) + shift.x(),
+                                        static_cast<double>(row[1]) + shift.y(),
+                                        static_cast<double>(row[2]) + shift.z())
+                             * upwards);
 }
 
+/// `shift`: null for rows without distances.
 template<class Real>
 void write_rows(std::byte* target, const OrderedMesh& mesh, const std::vector<Eigen::Vector3d>& vertices,
-                bool has_distances) {
+                const Eigen::Vector3d* shift) {
     // Reads in the order of memory, because a new frame's vertices may not be in a cache; the written rows
     // fit into one.
     for (std::size_t i = 0; i < vertices.size(); ++i) {
@@ -39,41 +41,42 @@ void write_rows(std::byte* target, const OrderedMesh& mesh, const std::vector<Ei
         const auto& p = vertices[i];
         std::array<Real, 4> row{static_cast<Real>(p.x()), static_cast<Real>(p.y()), static_cast<Real>(p.z()),
                                 0};
-        if (has_distances) row[3] = distance_of(row);
+        if (shift != nullptr) row[3] = distance_of(row, *shift);
         std::memcpy(target + mesh.numbers[i] * sizeof(row), row.data(), sizeof(row));
     }
 }
 
 void write_rows_in(const Geometry& geometry, std::byte* out, const OrderedMesh& mesh,
-                   const std::vector<Eigen::Vector3d>& vertices, bool has_distances) {
+                   const std::vector<Eigen::Vector3d>& vertices, const Eigen::Vector3d* shift) {
     if (geometry.precision == Precision::fp64)
-        write_rows<double>(out, mesh, vertices, has_distances);
+        write_rows<double>(out, mesh, vertices, shift);
     else
-        write_rows<float>(out, mesh, vertices, has_distances);
+        write_rows<float>(out, mesh, vertices, shift);
 }
 
 void append_vertices(std::vector<std::byte>& out, const Geometry& geometry, const OrderedMesh& mesh,
-                     const std::vector<Eigen::Vector3d>& vertices, bool has_distances) {
+                     const std::vector<Eigen::Vector3d>& vertices, const Eigen::Vector3d* shift) {
     const auto offset = out.size();
     out.resize(offset + mesh.vertices.size() * 4 * real_bytes(geometry));
-    write_rows_in(geometry, out.data() + offset, mesh, vertices, has_distances);
+    write_rows_in(geometry, out.data() + offset, mesh, vertices, shift);
 }
 
 } // namespace
 
 void write_vertices(std::byte* out, const Geometry& geometry, const OrderedMesh& mesh,
                     const std::vector<Eigen::Vector3d>& vertices) {
-    write_rows_in(geometry, out, mesh, vertices, false);
+    write_rows_in(geometry, out, mesh, vertices, nullptr);
 }
 
 void pack_vertices(std::vector<std::byte>& out, const Geometry& geometry, const OrderedMesh& mesh,
                    const std::vector<Eigen::Vector3d>& vertices) {
-    append_vertices(out, geometry, mesh, vertices, false);
+    append_vertices(out, geometry, mesh, vertices, nullptr);
 }
 
 void pack_vertices_with_distances(std::vector<std::byte>& out, const Geometry& geometry,
-                                  const OrderedMesh& mesh, const std::vector<Eigen::Vector3d>& vertices) {
-    append_vertices(out, geometry, mesh, vertices, true);
+                                  const OrderedMesh& mesh, const std::vector<Eigen::Vector3d>& vertices,
+                                  const Eigen::Vector3d& shift) {
+    append_vertices(out, geometry, mesh, vertices, &shift);
 }
 
 /// The order of operations affects the bits of answers; the reference has the same order

@@ -15,9 +15,11 @@ namespace tandem {
 void pack_vertices(std::vector<std::byte>& out, const Geometry& geometry, const OrderedMesh& mesh,
                    const std::vector<Eigen::Vector3d>& vertices);
 
-/// The same, but the fourth real is the vertex's distance from the origin, rounded up (swing_of of body.clh).
+/// The same, but the fourth real is the vertex's distance from the origin about which the mesh turns, rounded
+/// up (swing_of of body.clh). `shift`: the shift (shift.h) of the mesh, whose own origin is at -shift.
 void pack_vertices_with_distances(std::vector<std::byte>& out, const Geometry& geometry,
-                                  const OrderedMesh& mesh, const std::vector<Eigen::Vector3d>& vertices);
+                                  const OrderedMesh& mesh, const std::vector<Eigen::Vector3d>& vertices,
+                                  const Eigen::Vector3d& shift);
 
 /// Writes the rows of pack_vertices to `out`, which must be large enough.
 void write_vertices(std::byte* out, const Geometry& geometry, const OrderedMesh& mesh,

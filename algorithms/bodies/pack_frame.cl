@@ -37,15 +37,39 @@ DEVICE RealRow row_of(double x, double y, double z, double w) {
     return row;
 }
 
-// The rows of a unit quaternion's matrix, as in pose_rows of pack.cpp.
-DEVICE void write_pose(GLOBAL RealRow* rows, const double* q, const double* t) {
+// The 12 numbers of a unit quaternion and a translation, as pose_rows of pack.cpp.
+DEVICE void pose_rows(const double* q, const double* t, double* rows) {
     const double w = q[0];
     const double x = q[1];
     const double y = q[2];
     const double z = q[3];
-    rows[0] = row_of(1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), t[0]);
-    rows[1] = row_of(2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w), t[1]);
-    rows[2] = row_of(2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y), t[2]);
+    rows[0] = 1 - 2 * (y * y + z * z);
+    rows[1] = 2 * (x * y - z * w);
+    rows[2] = 2 * (x * z + y * w);
+    rows[3] = t[0];
+    rows[4] = 2 * (x * y + z * w);
+    rows[5] = 1 - 2 * (x * x + z * z);
+    rows[6] = 2 * (y * z - x * w);
+    rows[7] = t[1];
+    rows[8] = 2 * (x * z - y * w);
+    rows[9] = 2 * (y * z + x * w);
+    rows[10] = 1 - 2 * (x * x + y * y);
+    rows[11] = t[2];
+}
+
+// Moves the translation to the image of a mesh's shift, as shifted() of shift.cpp.
+DEVICE void shift_pose(GLOBAL const double* shift, double* rows) {
+    const double x = shift[0];
+    const double y = shift[1];
+    const double z = shift[2];
+    if (x == 0 && y == 0 && z == 0) return;
+    for (uint i = 0; i < 12u; i += 4u)
+        rows[i + 3] = ((rows[i] * x + rows[i + 1] * y) + rows[i + 2] * z) + rows[i + 3];
+}
+
+DEVICE void write_pose(GLOBAL RealRow* poses, const double* rows) {
+    for (uint i = 0; i < 3u; ++i)
+        poses[i] = row_of(rows[4 * i], rows[4 * i + 1], rows[4 * i + 2], rows[4 * i + 3]);
 }
 
 // Loads a row tx ty tz qw qx qy qz. Bodies with vertices in world coordinates get the identity. Returns the
@@ -70,10 +94,10 @@ DEVICE void unit_quaternion(const double* numbers, double norm, double* q) {
 
 DEVICE int is_rotation(double norm) { return norm > LEAST_NORM && norm < LARGEST_NORM; }
 
-// A work-item packs one body.
+// A work-item packs one body. `shifts`: three numbers a body; not read unless `has_shifts`.
 KERNEL void pack_poses(GLOBAL real* poses, GLOBAL const void* rows, uint kind, GLOBAL const uint* bodies,
                        uint count, double limit, double origin_x, double origin_y, double origin_z,
-                       GLOBAL uint* status) {
+                       GLOBAL const double* shifts, uint has_shifts, GLOBAL uint* status) {
     for (ulong body = GLOBAL_ID; body < count; body += GLOBAL_COUNT) {
         const int in_world = (bodies[body * BODY_WORDS + BODY_FLAGS] & BODY_IN_WORLD) != 0u;
         double numbers[POSE_NUMBERS];
@@ -90,7 +114,10 @@ KERNEL void pack_poses(GLOBAL real* poses, GLOBAL const void* rows, uint kind, G
         }
         double q[4];
         unit_quaternion(numbers, norm, q);
-        write_pose((GLOBAL RealRow*)(poses + body * POSE_REALS), q, numbers);
+        double pose[12];
+        pose_rows(q, numbers, pose);
+        if (has_shifts != 0u && !in_world) shift_pose(shifts + 3 * body, pose);
+        write_pose((GLOBAL RealRow*)(poses + body * POSE_REALS), pose);
     }
 }
 
@@ -146,7 +173,9 @@ KERNEL void pack_unit_poses(GLOBAL real* poses, GLOBAL const double* rows, uint 
         const double z = numbers[6];
         const double length = SQUARE_ROOT((w * w + x * x) + (y * y + z * z));
         const double q[4] = {w / length, x / length, y / length, z / length};
-        write_pose((GLOBAL RealRow*)(poses + body * POSE_REALS), q, t);
+        double pose[12];
+        pose_rows(q, t, pose);
+        write_pose((GLOBAL RealRow*)(poses + body * POSE_REALS), pose);
     }
 }
 

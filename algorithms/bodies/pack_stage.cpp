@@ -52,6 +52,11 @@ PackStage::PackStage(const Bodies& bodies, LaunchShape shape)
         indices.insert(indices.end(), numbers.begin(), numbers.end());
     }
     indices_ = uploaded(device, bytes_of(indices), "row indices of vertices");
+    if (scene.shifts.empty()) return;
+    std::vector<double> shifts;
+    for (const auto& body : scene.bodies)
+        for (const double number : scene.shifts[body.mesh]) shifts.push_back(number);
+    shifts_ = uploaded(device, bytes_of(shifts), "shifts of meshes");
 }
 
 Grid PackStage::grid_over(std::uint64_t count) const {
@@ -61,11 +66,19 @@ Grid PackStage::grid_over(std::uint64_t count) const {
 
 void PackStage::pack_poses(const DeviceRows& rows, const Buffer& poses, const Eigen::Vector3d& origin,
                            const Buffer& status) const {
-    const std::array<Argument, 10> arguments{poses,           rows.buffer ? rows.buffer : bodies_.row_table(),
-                                             kind_of(rows),   bodies_.row_table(),
-                                             bodies_.count(), limit_,
-                                             origin.x(),      origin.y(),
-                                             origin.z(),      status};
+    const bool has_shifts = static_cast<bool>(shifts_);
+    const std::array<Argument, 12> arguments{poses,
+                                             rows.buffer ? rows.buffer : bodies_.row_table(),
+                                             kind_of(rows),
+                                             bodies_.row_table(),
+                                             bodies_.count(),
+                                             limit_,
+                                             origin.x(),
+                                             origin.y(),
+                                             origin.z(),
+                                             has_shifts ? shifts_ : bodies_.row_table(),
+                                             has_shifts ? 1u : 0u,
+                                             status};
     bodies_.device().launch(poses_, grid_over(bodies_.count()), arguments);
 }
 

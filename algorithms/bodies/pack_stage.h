@@ -33,6 +33,7 @@ private:
     LaunchShape shape_;
     double limit_; ///< largest magnitude of a coordinate
     Kernel poses_, vertices_, arcs_;
+    Buffer shifts_;                            ///< Scene::shifts by body; empty unless the scene is centred
     Buffer indices_;                           ///< OrderedMesh::numbers of the meshes of deformable bodies
     std::vector<std::uint32_t> first_indices_; ///< by mesh, in indices_
 };

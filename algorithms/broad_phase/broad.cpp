@@ -5,6 +5,7 @@
 #include "algorithms/bodies/ball.h"
 #include "algorithms/bodies/drift.h"
 #include "algorithms/bodies/self_pairs.h"
+#include "algorithms/bodies/shift.h"
 #include "algorithms/broad_phase/slab_sweep.h"
 
 #include <algorithm>
@@ -36,14 +37,17 @@ BroadSweep::BroadSweep(const Scene& scene, const Geometry& geometry, Broad bound
         directions_ = {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()};
     else
         for (const auto& d : directions(geometry)) directions_.emplace_back(d[0], d[1], d[2]);
-    for (const auto& mesh : scene.meshes) shapes_.push_back(shape_of(mesh.vertices));
+    for (std::size_t mesh = 0; mesh < scene.meshes.size(); ++mesh)
+        shapes_.push_back(shape_of(scene.meshes[mesh].vertices, shift_in(scene, mesh)));
     for (std::uint32_t body = 0; body < scene.bodies.size(); ++body)
         if (meets_itself(scene, body, self)) own_.push_back({body, body});
 }
 
-BroadSweep::Shape BroadSweep::shape_of(const std::vector<Eigen::Vector3d>& vertices) const {
+BroadSweep::Shape BroadSweep::shape_of(const std::vector<Eigen::Vector3d>& vertices,
+                                       const Eigen::Vector3d& shift) const {
     const auto ball = ball_around(vertices);
-    Shape shape{ball.centre, Eigen::Vector3d::Zero(), ball.radius, reach_of(vertices)};
+    Shape shape{ball.centre, Eigen::Vector3d::Zero(), ball.radius, reach_of(vertices),
+                reach_of(vertices, shift)};
     for (const auto& v : vertices) shape.half = shape.half.cwiseMax((v - shape.centre).cwiseAbs());
     return shape;
 }
@@ -135,7 +139,7 @@ void BroadSweep::add_path(const FrameInput& input, std::uint32_t body, double sk
     // The factor covers that kernels compute with rounded distances, arcs and lengths of directions.
     constexpr double slack = 1 + 0x1p-16;
     const double arc = arc_between(input.frame.poses[body], input.next->poses[body]);
-    if (arc > 0) widen(slabs, arc * shapes_[scene_.bodies[body].mesh].reach * slack + underflow_);
+    if (arc > 0) widen(slabs, arc * shapes_[scene_.bodies[body].mesh].arm * slack + underflow_);
 }
 
 void BroadSweep::bound(const FrameInput& input, std::uint32_t body, double skin, double* slabs) const {

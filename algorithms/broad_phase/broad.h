@@ -37,12 +37,14 @@ private:
         Eigen::Vector3d centre, half;
         double radius = 0; ///< of the bounding sphere about `centre`
         double reach = 0;  ///< largest distance of a vertex from the mesh's origin
+        double arm = 0;    ///< the same from the origin about which the mesh turns
     };
 
     void bound_in(const Frame& frame, std::uint32_t body, double skin, double* slabs) const;
     void add_path(const FrameInput& input, std::uint32_t body, double skin, double* slabs) const;
     std::vector<BodyPair> swept(const std::vector<double>& slabs) const;
-    Shape shape_of(const std::vector<Eigen::Vector3d>& vertices) const;
+    Shape shape_of(const std::vector<Eigen::Vector3d>& vertices,
+                   const Eigen::Vector3d& shift = Eigen::Vector3d::Zero()) const;
     void bound_rigid(const Shape& shape, const Pose& pose, double* slabs) const;
     void bound_deformed(const std::vector<Eigen::Vector3d>& vertices, double* slabs) const;
     void widen(double* slabs, double skin) const;

@@ -3,6 +3,7 @@
 
 #include "algorithms/bodies/arc.h"
 #include "algorithms/bodies/drift.h"
+#include "algorithms/bodies/shift.h"
 #include "base/parallel.h"
 
 #include <algorithm>
@@ -12,9 +13,10 @@
 namespace tandem {
 
 DisplacementTracker::DisplacementTracker(const Scene& scene) : scene_(scene), balls_(scene.bodies.size()) {
-    for (const auto& mesh : scene.meshes) {
-        mesh_balls_.push_back(ball_around(mesh.vertices));
-        mesh_reach_.push_back(reach_of(mesh.vertices));
+    for (std::size_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
+        const auto& vertices = scene.meshes[mesh].vertices;
+        mesh_balls_.push_back(ball_around(vertices));
+        mesh_reach_.push_back(reach_of(vertices, shift_in(scene, mesh)));
     }
     reference_.poses.resize(scene.bodies.size());
     reference_.deformed.resize(scene.bodies.size());

@@ -36,7 +36,7 @@ private:
 
     const Scene& scene_;
     std::vector<Ball> mesh_balls_;   ///< by mesh, in mesh coordinates
-    std::vector<double> mesh_reach_; ///< by mesh: reach_of its vertices
+    std::vector<double> mesh_reach_; ///< by mesh: distance from the origin about which it turns
     std::vector<Ball> balls_;        ///< by body
     Frame reference_;
 };

@@ -49,6 +49,7 @@ std::shared_ptr<const Scene> local_subscene(const Scene& scene, const std::vecto
         if (mesh == none) {
             mesh = static_cast<std::uint32_t>(local_scene->meshes.size());
             local_scene->meshes.push_back(scene.meshes[body.mesh]);
+            if (!scene.shifts.empty()) local_scene->shifts.push_back(scene.shifts[body.mesh]);
         }
         body.mesh = mesh;
         local_scene->bodies.push_back(body);

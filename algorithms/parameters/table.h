@@ -69,7 +69,8 @@ inline constexpr Setting<Origin> origin{
     {{"world", Origin::world}, {"auto", Origin::automatic}},
     "",
     "origin of coordinates on devices: world: the world's origin; auto: a point in the middle of the scene's "
-    "first frame, so that a scene far from the world's origin is as accurate as one near it"};
+    "first frame, and rigid meshes far from their own origin are centred, so that a scene far from the "
+    "world's origin is as accurate as one near it"};
 
 inline constexpr auto builder =
     Setting<Builder>{

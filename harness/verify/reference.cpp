@@ -3,6 +3,7 @@
 
 #include "algorithms/narrow_phase/reference.h"
 #include "algorithms/bodies/self_pairs.h"
+#include "algorithms/bodies/shift.h"
 #include "algorithms/broad_phase/broad.h"
 #include "harness/verify/reference_bounds.h"
 #include "base/parallel.h"
@@ -173,13 +174,24 @@ std::uint64_t count_overlapping(const Scene& scene, const std::vector<Bounds<Rea
     return count;
 }
 
+/// The body pairs that setting broad=sphere_boxes finds, among bodies as devices have them.
+std::vector<BodyPair> pairs_within_boxes(const Scene& scene, const FrameInput& input,
+                                         const Geometry& geometry, SelfPairs self) {
+    const auto moved = centred(scene, geometry.origin);
+    if (!moved) return BroadSweep(scene, geometry, Broad::sphere_boxes, self).pairs(input);
+    const auto frame = shifted(*moved, input.frame);
+    const auto next = input.next != nullptr ? shifted(*moved, *input.next) : Frame();
+    return BroadSweep(*moved, geometry, Broad::sphere_boxes, self)
+        .pairs({frame, input.next != nullptr ? &next : nullptr});
+}
+
 /// Keeps the pairs of the body pairs that setting broad=sphere_boxes finds, and of these the part that the
 /// settings name.
 template<class Real>
 void keep_within_boxes(const Scene& scene, const FrameInput& input, const Geometry& geometry,
                        const ContactSettings& settings, const std::vector<Bounds<Real>>& bounds,
                        ReferenceAnswer& answer) {
-    const auto kept = BroadSweep(scene, geometry, Broad::sphere_boxes, settings.self).pairs(input);
+    const auto kept = pairs_within_boxes(scene, input, geometry, settings.self);
     answer.dropped_pairs = keep_pairs_of(kept, answer.pairs);
     answer.dropped_body_pairs = count_overlapping(scene, bounds, kept);
     const auto from = std::span(kept).subspan(std::min(settings.first_body_pair, kept.size()));

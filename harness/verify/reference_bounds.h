@@ -6,6 +6,7 @@
 #include "algorithms/bodies/drift.h"
 #include "algorithms/bodies/frame_input.h"
 #include "algorithms/bounds/geometry.h"
+#include "harness/verify/oracle/drift.h"
 #include "harness/verify/world_vertices.h"
 
 #include <algorithm>
@@ -121,25 +122,28 @@ std::pair<Real, Real> project(const std::array<Real, 3>& point, const std::array
 template<class Real>
 std::array<Real, 3> drift_in(const Scene& scene, const Frame& frame, const Geometry& geometry,
                              std::size_t body) {
-    const auto& mesh = scene.meshes[scene.bodies[body].mesh];
     const auto bound = scene.bodies[body].deformable
                            ? drift_bound(frame.deformed[body], geometry.precision)
-                           : drift_bound(frame.poses[body], reach_of(mesh.vertices), geometry.precision);
+                           : drift_bound_of(scene, frame, body, geometry.precision, geometry.origin);
     return {static_cast<Real>(bound[0]), static_cast<Real>(bound[1]), static_cast<Real>(bound[2])};
 }
 
 /// Bounds on the distances of a body's vertices from the straight paths to the next frame. The arc is an
 /// input here, as drift is. Empty for straight paths.
 template<class Real>
-std::vector<Real> swings_of(const Scene& scene, const FrameInput& input, std::size_t body) {
+std::vector<Real> swings_of(const Scene& scene, const FrameInput& input, Origin origin, std::size_t body) {
     std::vector<Real> swings;
     if (input.next == nullptr || scene.bodies[body].deformable) return swings;
     const auto arc = static_cast<Real>(arc_between(input.frame.poses[body], input.next->poses[body]));
     if (!(arc > 0)) return swings;
-    for (const auto& v : scene.meshes[scene.bodies[body].mesh].vertices) {
-        const auto x = static_cast<double>(static_cast<Real>(v.x()));
-        const auto y = static_cast<double>(static_cast<Real>(v.y()));
-        const auto z = static_cast<double>(static_cast<Real>(v.z()));
+    const auto& mesh = scene.meshes[scene.bodies[body].mesh];
+    const auto centre = centre_of(mesh, origin);
+    for (const auto& v : mesh.vertices) {
+        // The body turns about its mesh's own origin, from which rounding has moved the vertex by an ulp of
+        // its distance from the centre.
+        const auto x = static_cast<double>(static_cast<Real>(v.x() - centre[0])) + centre[0];
+        const auto y = static_cast<double>(static_cast<Real>(v.y() - centre[1])) + centre[1];
+        const auto z = static_cast<double>(static_cast<Real>(v.z() - centre[2])) + centre[2];
         const auto distance = static_cast<Real>(std::hypot(x, y, z) * (1 + 0x1p-20));
         swings.push_back(distance > 0 ? distance * arc + std::numeric_limits<Real>::min() : 0);
     }
@@ -157,7 +161,7 @@ Bounds<Real> bounds_of(const Scene& scene, const Frame& frame, const Geometry& g
     bounds.published = geometry.rounding == Rounding::published;
     const bool drifts = geometry.placement == Placement::exact;
     const auto drift = drifts ? drift_in<Real>(scene, frame, geometry, body) : std::array<Real, 3>{};
-    bounds.vertices = world_vertices<Real>(scene, frame, body);
+    bounds.vertices = world_vertices<Real>(scene, frame, body, geometry.origin);
     const auto& tetrahedra = scene.meshes[scene.bodies[body].mesh].tetrahedra;
     bounds.slabs.resize(tetrahedra.size() * 2 * axes.size());
     bounds.whole.assign(axes.size(), std::numeric_limits<Real>::infinity());
@@ -189,7 +193,7 @@ Bounds<Real> bounds_of(const Scene& scene, const Frame& frame, const Geometry& g
 template<class Real>
 Bounds<Real> bounds_of(const Scene& scene, const FrameInput& input, const Geometry& geometry,
                        std::size_t body) {
-    const auto swings = swings_of<Real>(scene, input, body);
+    const auto swings = swings_of<Real>(scene, input, geometry.origin, body);
     auto bounds = bounds_of<Real>(scene, input.frame, geometry, body, swings);
     if (input.next == nullptr) return bounds;
     const auto next = bounds_of<Real>(scene, *input.next, geometry, body, swings);

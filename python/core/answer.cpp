@@ -78,7 +78,7 @@ std::vector<Pair> Answer::meeting() const {
         if (found.empty()) return found;
         const auto& [x, y, z] = result_.origin;
         world = frame_ ? oracle::world_of(collider_->scene(), counted_from({x, y, z}, *frame_),
-                                          geometry.precision)
+                                          geometry.precision, geometry.origin)
                        : collider_->world_of(number_);
     }
     return meeting_of(world, found);

@@ -97,6 +97,12 @@ TEST_P(DeviceFrames, UseTheOriginOfTheSession) {
     expect_same_answers("tiled", scene, {{"k", "18"}, {"origin", "auto"}, {"precision", "double"}});
 }
 
+TEST_P(DeviceFrames, CentreDistantMeshes) {
+    const auto scene = with_distant_meshes(crowd(5, 8, 1.2), {1e6, 3e4, 0});
+    for (const std::string precision : {"float", "double"})
+        expect_same_answers("tiled", scene, {{"k", "18"}, {"origin", "auto"}, {"precision", precision}});
+}
+
 TEST_P(DeviceFrames, IgnoreSkippedTetrahedra) {
     const auto scene = crowd(4, 9, 1.2);
     const auto from_host = prepare("chunked", scene, {}), from_device = prepare("chunked", scene, {});

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Poses of frames in the host's memory, packed by a kernel: the bits that the host packs.
+#include "algorithms/bodies/origin.h"
 #include "algorithms/bodies/pose_stage.h"
 #include "tests/support/cells.h"
 #include "tests/support/scenes.h"
@@ -71,6 +72,24 @@ TEST_P(PoseStages, GiveSessionsTheRightAnswer) {
             EXPECT_EQ(result.digest(), right.digest);
             EXPECT_EQ(result.contact_digest(), right.contact_digest);
         }
+    }
+}
+
+TEST_P(PoseStages, CentreDistantMeshes) {
+    const auto distant = with_distant_meshes(scene, {1e6});
+    const std::array devices{&on};
+    const auto& traversal = algorithm("tiled");
+    const auto session = traversal.prepare(
+        devices, distant,
+        resolve(traversal.parameters(), {}, {{"broad", "device"}, {"origin", "auto"}}, "tiled"));
+    for (const std::size_t i : {0u, 2u}) {
+        const auto frame = distant.frame(i);
+        const auto right = reference(distant, counted_from(session->origin(), frame),
+                                     geometry_of(session->settings()), true, Method::sweep);
+        const auto result = session->run(frame);
+        EXPECT_GT(result.count, 10000u);
+        EXPECT_EQ(result.digest(), right.digest);
+        EXPECT_EQ(result.contact_digest(), right.contact_digest);
     }
 }
 

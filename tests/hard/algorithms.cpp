@@ -154,8 +154,9 @@ TEST_P(HardAlgorithms, MissNothingOnTheWay) {
         for (const std::string precision : {"float", "double"}) {
             if (!long_form() && GetParam() != "host" && precision == "double") continue;
             const auto self = family.self ? SelfPairs::on : SelfPairs::off;
-            const auto truth =
-                motion_truth(scene, from, to, precision == "float" ? Precision::fp32 : Precision::fp64, self);
+            const auto truth = motion_truth(scene, from, to,
+                                            {precision == "float" ? Precision::fp32 : Precision::fp64,
+                                             Placement::rounded, Origin::world, self});
             met_ += truth.colliding.size();
             for (std::size_t i = 0; i < algorithms().size(); ++i) {
                 if (!long_form() && GetParam() != "host" && i != number % algorithms().size()) continue;

@@ -163,8 +163,8 @@ double overlapping(const HardFamily& family, double e) {
 /// Largest difference between a vertex transformed in single and in double precision.
 double drift(const HardFamily& family, double e) {
     const auto scene = scene_of(family, e);
-    const auto once = world_vertices<float>(scene, scene.frame(0), 0);
-    const auto twice = world_vertices<double>(scene, scene.frame(0), 0);
+    const auto once = world_vertices<float>(scene, scene.frame(0), 0, Origin::world);
+    const auto twice = world_vertices<double>(scene, scene.frame(0), 0, Origin::world);
     double most = 0;
     for (std::size_t i = 0; i < once.size(); ++i)
         for (unsigned axis = 0; axis < 3; ++axis)
@@ -211,9 +211,9 @@ double meeting_when_rounded(const HardFamily& family, double e) {
         return frame;
     };
     const auto self = family.self ? SelfPairs::on : SelfPairs::off;
-    return static_cast<double>(
-        motion_truth(scene, rounded(0), rounded(scene.frame_count - 1), Precision::fp32, self)
-            .colliding.size());
+    return static_cast<double>(motion_truth(scene, rounded(0), rounded(scene.frame_count - 1),
+                                            {Precision::fp32, Placement::rounded, Origin::world, self})
+                                   .colliding.size());
 }
 
 double meeting_within_bodies(const HardFamily& family, double e) {
@@ -229,7 +229,7 @@ double way(const HardFamily& family, double e) {
     std::array<std::vector<std::array<double, 3>>, 2> at[2];
     for (unsigned end = 0; end < 2; ++end)
         for (unsigned body = 0; body < 2; ++body)
-            at[end][body] = world_vertices<double>(scene, scene.frame(end), body);
+            at[end][body] = world_vertices<double>(scene, scene.frame(end), body, Origin::world);
     double most = 0;
     for (std::size_t i = 0; i < 4; ++i) {
         double square = 0;

@@ -33,6 +33,11 @@ TEST_F(RankMotion, CombinedAnswersEqualOneDevice) {
     }
 }
 
+/// Arcs about distant origins of meshes are longer than skins.
+TEST_F(RankMotion, CentredMeshesMoveOnArcs) {
+    expect_paths_equal(with_distant_meshes(procession(24, 3, 0.02), {1e4}), {{"origin", "auto"}});
+}
+
 /// Neighbours in frames 0 and 1 are the same; halfway every other body passes the next one.
 Scene leaping_row(std::uint32_t bodies) {
     auto scene = procession(bodies, 3, 0);

@@ -49,6 +49,16 @@ TEST_F(RankSessions, CombinedAnswersEqualOneDevice) {
     }
 }
 
+/// Ranks exchange poses of centred meshes.
+TEST_F(RankSessions, CombinedAnswersOfDistantMeshesEqualOneDevice) {
+    const auto scene = with_distant_meshes(procession(24, 4, 0.35), {1e6});
+    const auto& traversal = algorithm("tiled");
+    const auto settings = settings_of(traversal, {{"origin", "auto"}});
+    const auto session = traversal.prepare(own_device(), scene, settings, *job);
+    const auto one = alone(traversal, scene, {{"origin", "auto"}});
+    for (const std::size_t i : {0u, 1u, 3u, 0u}) expect_equal(scene, *session, *one, i);
+}
+
 /// Bodies and meshes; here every body has its own mesh.
 TEST_F(RankSessions, UploadOnlyOwnAndGhostBodies) {
     auto scene = procession(400, 1, 0.35);

@@ -95,6 +95,26 @@ inline Scene crowd(std::uint64_t seed, std::uint32_t bodies, double spread) {
     return scene;
 }
 
+/// The same scene, whose mesh m is moved by `distances[m]` along (1, -0.7, 0.4), and rigid bodies back by
+/// their poses, which rounds.
+inline Scene with_distant_meshes(Scene scene, const std::vector<double>& distances) {
+    std::vector<Eigen::Vector3d> by;
+    for (std::size_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
+        by.push_back(distances[mesh] * Eigen::Vector3d(1, -0.7, 0.4));
+        for (auto& vertex : scene.meshes[mesh].vertices) vertex += by[mesh];
+    }
+    scene.frame = [near = scene.frame, bodies = scene.bodies, by](std::size_t number) {
+        auto frame = near(number);
+        for (std::size_t body = 0; body < bodies.size(); ++body) {
+            auto& pose = frame.poses[body];
+            if (!bodies[body].deformable) pose.translation -= pose.rotation * by[bodies[body].mesh];
+        }
+        return frame;
+    };
+    scene.digest = digest_of(scene);
+    return scene;
+}
+
 /// Boxes in a row along x, each overlapping its neighbours. From frame to frame they move by `step` along x
 /// and rotate. The first is fixed, the second deformable.
 inline Scene procession(std::uint32_t bodies, std::size_t frames, double step) {

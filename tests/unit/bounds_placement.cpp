@@ -208,6 +208,25 @@ TEST(Truth, DriftIsWithinItsBoundAndCloseToIt) {
     }
 }
 
+/// Meshes are centred; the rounding of the composed translation is a part of the bound (theorem 5).
+TEST(Truth, DriftOfCentredMeshesIsWithinItsBoundAndSmall) {
+    for (const auto precision : {Precision::fp32, Precision::fp64}) {
+        double largest = 0;
+        for (const double distance : {1e2, 1e4, 1e6, 1e9}) {
+            const auto scene = with_distant_meshes(crowd(71, 30, 1.0), {distance, distance, 3 * distance});
+            const auto frame = scene.frame(1);
+            const auto centred = vertex_drift(scene, frame, precision, Origin::automatic);
+            EXPECT_LE(centred.of_bound, 1) << distance;
+            largest = std::max(largest, centred.of_bound);
+            if (precision == Precision::fp32 && distance < 1e7) {
+                EXPECT_LE(centred.max, 8) << distance;
+                EXPECT_GT(vertex_drift(scene, frame, precision).max, distance) << "in ulps, not centred";
+            }
+        }
+        EXPECT_GT(largest, 0.05) << "the bound is too loose to be tested";
+    }
+}
+
 TEST(Truth, DriftIsZeroWhereNothingIsRounded) {
     const auto scene = crowd(72, 3, 1.0);
     auto frame = scene.frame(0);

@@ -143,8 +143,8 @@ TEST(OracleFrame, VerticesSurviveTheRoundTripThroughFloat) {
     const auto scene = make_scene("pile:bodies=8,frames=1");
     const auto frame = scene.frame(0);
     for (std::size_t body = 0; body < scene.bodies.size(); ++body) {
-        const auto single = world_vertices<float>(scene, frame, body);
-        const auto twice = world_vertices<double>(scene, frame, body);
+        const auto single = world_vertices<float>(scene, frame, body, Origin::world);
+        const auto twice = world_vertices<double>(scene, frame, body, Origin::world);
         bool differ = false;
         for (std::size_t i = 0; i < single.size(); ++i)
             for (unsigned axis = 0; axis < 3; ++axis) {

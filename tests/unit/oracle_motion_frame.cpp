@@ -193,8 +193,8 @@ TEST(OracleMotionFrame, RandomTurnsAgreeWithManyTimes) {
 
 /// Every pair of tetrahedra whose bodies may meet, and of setting self, one by one from straight corners.
 std::vector<Pair> pairs_one_by_one(const Scene& scene, const std::array<Frame, 2>& frames, SelfPairs self) {
-    const auto from = oracle::world_of(scene, frames[0], Precision::fp32);
-    const auto to = oracle::world_of(scene, frames[1], Precision::fp32);
+    const auto from = oracle::world_of(scene, frames[0], Precision::fp32, Origin::world);
+    const auto to = oracle::world_of(scene, frames[1], Precision::fp32, Origin::world);
     std::vector<Pair> result;
     for (std::uint32_t a = 0; a < from.size(); ++a)
         for (std::uint32_t b = a; b < from.size(); ++b) {
@@ -241,7 +241,8 @@ TEST(OracleMotionFrame, EqualsPairsOneByOne) {
     const auto& [from, to] = passing.frames;
     for (const auto self : {SelfPairs::off, SelfPairs::on}) {
         const auto expected = pairs_one_by_one(passing.scene, passing.frames, self);
-        const auto truth = motion_truth(passing.scene, from, to, Precision::fp32, self);
+        const auto truth =
+            motion_truth(passing.scene, from, to, {Precision::fp32, Placement::rounded, Origin::world, self});
         EXPECT_TRUE(truth.colliding == expected) << truth.colliding.size() << " " << expected.size();
         EXPECT_TRUE(truth.undecided.empty());
         EXPECT_GT(expected.size(), 500u);
@@ -285,10 +286,9 @@ TEST(OracleMotionFrame, SkippedAndInvalidTetrahedraAreInNoPair) {
 TEST(OracleMotionFrame, RefusesTooLittleMemoryAndReportsProgress) {
     const PassingBoxes passing;
     const auto& [from, to] = passing.frames;
-    EXPECT_THROW(motion_truth(passing.scene, from, to, Precision::fp32, SelfPairs::off, {.memory = 1000}),
-                 InputError);
+    EXPECT_THROW(motion_truth(passing.scene, from, to, Precision::fp32, {.memory = 1000}), InputError);
     double last = 0;
-    const auto truth = motion_truth(passing.scene, from, to, Precision::fp32, SelfPairs::off,
+    const auto truth = motion_truth(passing.scene, from, to, Precision::fp32,
                                     {.report = [&](double fraction, std::uint64_t) { last = fraction; }});
     EXPECT_EQ(last, 1);
     EXPECT_GT(truth.tiers[static_cast<unsigned>(MeetingTier::intervals)], 0u);

@@ -179,7 +179,7 @@ DecisionMatrix decision_matrix(const FrameTruth& truth, std::span<const Pair> ca
     return matrix;
 }
 
-ContactTruths contact_truths(const Scene& scene, const Frame& frame, Precision precision,
+ContactTruths contact_truths(const Scene& scene, const Frame& frame, Positions positions,
                              const FrameTruth& truth, std::size_t most, const Eigen::Vector3d& origin) {
     ContactTruths result;
     const auto& all = truth.overlapping;
@@ -188,7 +188,7 @@ ContactTruths contact_truths(const Scene& scene, const Frame& frame, Precision p
     std::vector<Pair> chosen;
     // Choose evenly over the order, which is by bodies: the first pairs would cover only a part of the scene.
     for (std::size_t i = 0; i < count; ++i) chosen.push_back(all[i * all.size() / count]);
-    auto corners = pair_corners(scene, frame, precision, chosen);
+    auto corners = pair_corners(scene, frame, positions, chosen);
     for (auto& pair : corners)
         for (auto& tetrahedron : pair)
             for (auto& corner : tetrahedron)

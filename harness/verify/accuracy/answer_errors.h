@@ -73,7 +73,7 @@ struct ContactTruths {
 
 /// Exact intersections of at most `most` overlapping pairs, evenly spread over their order; 0: all. Results
 /// are in world coordinates; those of the frame are relative to `origin`.
-ContactTruths contact_truths(const Scene& scene, const Frame& frame, Precision precision,
+ContactTruths contact_truths(const Scene& scene, const Frame& frame, Positions positions,
                              const FrameTruth& truth, std::size_t most,
                              const Eigen::Vector3d& origin = Eigen::Vector3d::Zero());
 

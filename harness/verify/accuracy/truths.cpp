@@ -52,8 +52,7 @@ const MotionTruth& Truths::motion_truth_of(const FramePosition& position, const 
     if (const auto found = motion_truths_.find(position); found != motion_truths_.end()) return found->second;
     const auto& [positions, index] = position;
     const auto state = range_.state(index, Motion::linear, positions.origin);
-    auto truth = motion_truth(scene_, *state.frame, *state.next, positions.precision, positions.self,
-                              {report, free_memory()});
+    auto truth = motion_truth(scene_, *state.frame, *state.next, positions, {report, free_memory()});
     return motion_truths_.emplace(position, std::move(truth)).first->second;
 }
 
@@ -88,8 +87,8 @@ const ContactTruths& Truths::contact_truths_of(const FramePosition& position, Wa
     if (const auto found = contact_truths_.find(key); found != contact_truths_.end()) return found->second;
     const auto& [positions, index] = position;
     const auto frame = range_.frame(index, positions.origin);
-    auto truths = contact_truths(scene_, *frame, positions.precision, truth, most_contacts_,
-                                 origin_of(scene_, positions.origin));
+    auto truths =
+        contact_truths(scene_, *frame, positions, truth, most_contacts_, origin_of(scene_, positions.origin));
     return contact_truths_.emplace(key, std::move(truths)).first->second;
 }
 
@@ -137,7 +136,8 @@ const Drift& Truths::drift_of(const Geometry& geometry) {
     const std::pair key{geometry.precision, geometry.origin};
     if (const auto found = drifts_.find(key); found != drifts_.end()) return found->second;
     const auto first = range_.frame(0, geometry.origin);
-    return drifts_.emplace(key, vertex_drift(scene_, *first, geometry.precision)).first->second;
+    return drifts_.emplace(key, vertex_drift(scene_, *first, geometry.precision, geometry.origin))
+        .first->second;
 }
 
 /// A download may throw; the caller then stores nothing, and the next cell tries again.

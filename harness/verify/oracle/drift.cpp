@@ -2,6 +2,7 @@
 #include "harness/verify/oracle/drift.h"
 
 #include "algorithms/bodies/drift.h"
+#include "algorithms/bodies/shift.h"
 #include "harness/verify/oracle/posed.h"
 #include "geometry/rounding.h"
 #include "harness/sampling/statistics.h"
@@ -43,13 +44,11 @@ double spacing(double x) {
 
 /// Drift of one body by vertex. Differences are rationals that are rounded once.
 template<class Real>
-BodyDrift drift_in(const Scene& scene, const Frame& frame, std::size_t body) {
+BodyDrift drift_in(const Scene& scene, const Frame& frame, std::size_t body, Origin origin) {
     constexpr auto precision = sizeof(Real) == 8 ? Precision::fp64 : Precision::fp32;
-    const auto world = world_vertices<Real>(scene, frame, body);
-    const auto& mesh = scene.meshes[scene.bodies[body].mesh];
-    const auto bound = scene.bodies[body].deformable
-                           ? drift_bound(frame.deformed[body], precision)
-                           : drift_bound(frame.poses[body], reach_of(mesh.vertices), precision);
+    const auto world = world_vertices<Real>(scene, frame, body, origin);
+    const auto bound = scene.bodies[body].deformable ? drift_bound(frame.deformed[body], precision)
+                                                     : drift_bound_of(scene, frame, body, precision, origin);
     BodyDrift result;
     for (std::size_t vertex = 0; vertex < world.size(); ++vertex) {
         const auto exact = exact_vertex(scene, frame, body, vertex);
@@ -69,11 +68,18 @@ BodyDrift drift_in(const Scene& scene, const Frame& frame, std::size_t body) {
 
 } // namespace
 
-Drift vertex_drift(const Scene& scene, const Frame& frame, Precision precision) {
+std::array<double, 3> drift_bound_of(const Scene& scene, const Frame& frame, std::size_t body,
+                                     Precision precision, Origin origin) {
+    const auto& mesh = scene.meshes[scene.bodies[body].mesh];
+    const Eigen::Vector3d shift = origin == Origin::world ? Eigen::Vector3d::Zero() : shift_of(mesh);
+    return drift_bound(shifted(frame.poses[body], shift), reach_of(mesh.vertices, -shift), precision, shift);
+}
+
+Drift vertex_drift(const Scene& scene, const Frame& frame, Precision precision, Origin origin) {
     std::vector<BodyDrift> bodies(scene.bodies.size());
     parallel_for(bodies.size(), [&](std::size_t body) {
-        bodies[body] = precision == Precision::fp64 ? drift_in<double>(scene, frame, body)
-                                                    : drift_in<float>(scene, frame, body);
+        bodies[body] = precision == Precision::fp64 ? drift_in<double>(scene, frame, body, origin)
+                                                    : drift_in<float>(scene, frame, body, origin);
     });
     Drift drift;
     std::vector<double> ulps;

@@ -4,7 +4,13 @@
 #include "algorithms/bounds/geometry.h"
 #include "scenes/scene.h"
 
+#include <array>
+
 namespace tandem {
+
+/// drift_bound() of a rigid body on devices with this origin. `frame`: relative to the origin.
+std::array<double, 3> drift_bound_of(const Scene& scene, const Frame& frame, std::size_t body,
+                                     Precision precision, Origin origin);
 
 /// Distance of a frame's world vertices in a cell's precision (placement=rounded) from the exactly posed
 /// vertices of the scene (placement=exact). A vertex's drift is its largest distance along an axis, in ulps
@@ -16,6 +22,7 @@ struct Drift {
 };
 
 /// Computes with rationals and rounds once for each vertex. Runs on all cores; about 10 us a vertex.
-Drift vertex_drift(const Scene& scene, const Frame& frame, Precision precision);
+Drift vertex_drift(const Scene& scene, const Frame& frame, Precision precision,
+                   Origin origin = Origin::world);
 
 } // namespace tandem

@@ -21,7 +21,7 @@ public:
     Bodies(const Scene& scene, const Frame& frame, Positions positions)
         : scene_(scene),
           frame_(frame),
-          world_(world_of(scene, frame, positions.precision)),
+          world_(world_of(scene, frame, positions.precision, positions.origin)),
           off_(world_.size()),
           posed_(positions.placement == Placement::exact) {
         if (!posed_) return;
@@ -129,10 +129,10 @@ std::vector<Decision> decide_pairs(const Scene& scene, const Frame& frame, Posit
 }
 
 std::vector<std::array<TetraCorners, 2>> pair_corners(const Scene& scene, const Frame& frame,
-                                                      Precision precision, std::span<const Pair> pairs) {
+                                                      Positions positions, std::span<const Pair> pairs) {
     std::vector<std::array<TetraCorners, 2>> corners;
     if (pairs.empty()) return corners;
-    const auto world = world_of(scene, frame, precision);
+    const auto world = world_of(scene, frame, positions.precision, positions.origin);
     for (const auto& pair : pairs)
         corners.push_back({world[pair.body_a][pair.tet_a], world[pair.body_b][pair.tet_b]});
     return corners;

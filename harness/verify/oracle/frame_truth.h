@@ -19,7 +19,7 @@ namespace tandem {
 struct Positions {
     Precision precision = Precision::fp32;
     Placement placement = Placement::rounded;
-    Origin origin = Origin::world; ///< of coordinates that Placement::rounded rounds
+    Origin origin = Origin::world; ///< of coordinates and meshes that Placement::rounded rounds
     SelfPairs self = SelfPairs::off;
 
     // NOLINTNEXTLINE(*-explicit-*): most callers pass only a precision
@@ -54,9 +54,9 @@ FrameTruth frame_truth(const Scene& scene, const Frame& frame, Positions positio
 std::vector<Decision> decide_pairs(const Scene& scene, const Frame& frame, Positions positions,
                                    std::span<const Pair> pairs);
 
-/// The corners of the pairs' tetrahedra, in the order of the list and with Placement::rounded.
+/// The corners of the pairs' tetrahedra, in the order of the list. They are rounded for every placement.
 std::vector<std::array<TetraCorners, 2>> pair_corners(const Scene& scene, const Frame& frame,
-                                                      Precision precision, std::span<const Pair> pairs);
+                                                      Positions positions, std::span<const Pair> pairs);
 
 /// Looks up ascending pairs in one pass over a sorted list, which is much faster than a search for each.
 class PairCursor {

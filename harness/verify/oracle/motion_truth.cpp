@@ -17,10 +17,11 @@ using namespace oracle;
 /// The paths of all bodies between two frames.
 class MovingBodies {
 public:
-    MovingBodies(const Scene& scene, const Frame& from, const Frame& to, Precision precision)
+    MovingBodies(const Scene& scene, const Frame& from, const Frame& to, Positions positions)
         : scene_(scene),
           frames_{&from, &to},
-          world_{world_of(scene, from, precision), world_of(scene, to, precision)},
+          world_{world_of(scene, from, positions.precision, positions.origin),
+                 world_of(scene, to, positions.precision, positions.origin)},
           turns_(scene.bodies.size()) {
         for (std::size_t body = 0; body < turns_.size(); ++body)
             if (!scene.bodies[body].deformable) turns_[body] = Turn(from.poses[body], to.poses[body]);
@@ -97,15 +98,15 @@ void add_meeting(const MovingBodies& bodies, std::span<const Pair> pairs, Motion
 
 } // namespace
 
-MotionTruth motion_truth(const Scene& scene, const Frame& from, const Frame& to, Precision precision,
-                         SelfPairs self, const TruthOptions& options) {
+MotionTruth motion_truth(const Scene& scene, const Frame& from, const Frame& to, Positions positions,
+                         const TruthOptions& options) {
     const auto fixed_bytes = tetrahedron_count(scene) * 2 * (sizeof(TetraCorners) + sizeof(Box));
     check_memory(scene, fixed_bytes, options.memory);
     MotionTruth truth;
-    const MovingBodies bodies(scene, from, to, precision);
+    const MovingBodies bodies(scene, from, to, positions);
     const auto boxes = bodies.boxes();
     truth.invalid = invalid_of(boxes);
-    for_near_blocks({scene, boxes, self, fixed_bytes, options.memory}, options.report,
+    for_near_blocks({scene, boxes, positions.self, fixed_bytes, options.memory}, options.report,
                     [&](std::span<const Pair> pairs) { add_meeting(bodies, pairs, truth); });
     parallel_sort(truth.colliding);
     parallel_sort(truth.undecided);

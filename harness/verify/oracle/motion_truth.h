@@ -9,7 +9,7 @@ namespace tandem {
 /// The tetrahedra that meet while all bodies move from one frame to the next.
 ///
 /// Time s runs from 0 to 1. x0 and x1 are the vertices of world_vertices() in both frames, in the cell's
-/// precision and treated as exact. Vertices of deformable bodies move on straight lines,
+/// precision and with its origin, treated as exact. Vertices of deformable bodies move on straight lines,
 /// x(s) = (1 - s) x0 + s x1. A vertex p of a rigid body's mesh has
 /// x(s) = (1 - s) x0 + s x1 + (R(s) p - ((1 - s) R(0) p + s R(1) p)), where R turns from the first rotation
 /// to the second about one axis, the shorter way and at constant speed. R(0) and R(1) are the frames'
@@ -30,11 +30,11 @@ struct TruthOptions {
 };
 
 /// Decides every pair of tetrahedra that frame_truth() would decide in either frame: of bodies that
-/// may_meet() allows, and with `self` those of one body that share no vertex. Tetrahedra that either frame
-/// skips are in no pair. Pairs that are not listed never meet: only pairs whose boxes over the whole motion
-/// are disjoint are not decided. Runs on all cores. Throws InputError when the estimated memory exceeds
-/// `memory` bytes.
-MotionTruth motion_truth(const Scene& scene, const Frame& from, const Frame& to, Precision precision,
-                         SelfPairs self = SelfPairs::off, const TruthOptions& options = {});
+/// may_meet() allows, and with positions.self those of one body that share no vertex. Tetrahedra that either
+/// frame skips are in no pair. Pairs that are not listed never meet: only pairs whose boxes over the whole
+/// motion are disjoint are not decided. Runs on all cores. Throws InputError when the estimated memory
+/// exceeds `memory` bytes.
+MotionTruth motion_truth(const Scene& scene, const Frame& from, const Frame& to, Positions positions,
+                         const TruthOptions& options = {});
 
 } // namespace tandem

@@ -9,10 +9,10 @@ namespace tandem::oracle {
 namespace {
 
 template<class Real>
-World world_in(const Scene& scene, const Frame& frame) {
+World world_in(const Scene& scene, const Frame& frame, Origin origin) {
     World world(scene.bodies.size());
     parallel_for(world.size(), [&](std::size_t body) {
-        const auto vertices = world_vertices<Real>(scene, frame, body);
+        const auto vertices = world_vertices<Real>(scene, frame, body, origin);
         for (const auto& tetrahedron : scene.meshes[scene.bodies[body].mesh].tetrahedra) {
             auto& corners = world[body].emplace_back();
             for (unsigned i = 0; i < 4; ++i)
@@ -25,8 +25,9 @@ World world_in(const Scene& scene, const Frame& frame) {
 
 } // namespace
 
-World world_of(const Scene& scene, const Frame& frame, Precision precision) {
-    return precision == Precision::fp64 ? world_in<double>(scene, frame) : world_in<float>(scene, frame);
+World world_of(const Scene& scene, const Frame& frame, Precision precision, Origin origin) {
+    return precision == Precision::fp64 ? world_in<double>(scene, frame, origin)
+                                        : world_in<float>(scene, frame, origin);
 }
 
 } // namespace tandem::oracle
