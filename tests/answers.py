@@ -145,7 +145,7 @@ class Answers(Case):
         status, out, errors = tandem("check", "hard:all:pairs=2,together=2", *fast)
         self.assertEqual((status, errors), (0, []), out)
         rows = [line for line in out.splitlines() if line.startswith("hard:")]
-        self.assertEqual(len(rows), 59)
+        self.assertEqual(len(rows), 60)
         refusal = "tetrahedra 2 not finite in 1 of 2 bodies: body 0 tetrahedron 0, 1 in frame 0; "
         self.assertIn("refused: " + refusal, rows[9])
         self.assertEqual(rows[10].split(), ["hard:not-finite", "1", "0", "0", "0", "0", str(len(algorithms)), "0", "skipped:", "2"])

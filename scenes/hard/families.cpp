@@ -16,7 +16,7 @@ std::vector<HardFamily> all_families() {
     for (const auto group : {hard::bounding_families(), hard::tolerance_families(), hard::decision_families(),
                              hard::shape_families(), hard::contact_families(), hard::deforming_families(),
                              hard::capacity_families(), hard::one_body_families(), hard::moving_families(),
-                             hard::turning_families()})
+                             hard::turning_families(), hard::distant_families()})
         all.insert(all.end(), group.begin(), group.end());
     std::ranges::sort(all, {}, &HardFamily::row);
     return all;

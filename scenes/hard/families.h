@@ -18,5 +18,6 @@ std::span<const HardFamily> capacity_families();  ///< f
 std::span<const HardFamily> one_body_families();  ///< g
 std::span<const HardFamily> moving_families();    ///< h, on straight paths
 std::span<const HardFamily> turning_families();   ///< h, with rotations and equal speeds
+std::span<const HardFamily> distant_families();   ///< i
 
 } // namespace tandem::hard

@@ -39,11 +39,11 @@ struct HardKnob {
 };
 
 /// A family of hard cases, one row of the catalogue. A family of pairs has `pair`, a family of scenes has
-/// `scene`. Fields have the order of a row, since padding does not matter for 58 objects.
+/// `scene`. Fields have the order of a row, since padding does not matter for 59 objects.
 struct HardFamily { // NOLINT(clang-analyzer-optin.performance.Padding)
     unsigned row;   ///< row in the catalogue, from 1
     /// a k-DOPs, b tolerances, c decision, d contacts, e deforming, f queues and stacks, g pairs of one body,
-    /// h motion between two frames
+    /// h motion between two frames, i distances in double
     char group;
     std::string_view name; ///< "touch": the scene kind is hard:touch
     std::string_view summary;
@@ -63,9 +63,12 @@ struct HardFamily { // NOLINT(clang-analyzer-optin.performance.Padding)
     std::uint64_t (*meeting)(double difficulty) = nullptr;
     bool self = false;   ///< the intended pairs are of one body, which setting self finds
     bool motion = false; ///< the intended pairs meet between frame 0 and frame 1
+    /// Coordinates need double, and cells in single precision need origin=auto. The coordinates of all other
+    /// families are floats.
+    bool distant = false;
 };
 
-/// All 58, in the order of the catalogue.
+/// All 59, in the order of the catalogue.
 std::span<const HardFamily> hard_families();
 
 /// The family of that name. Throws InputError with the nearest name when there is none.

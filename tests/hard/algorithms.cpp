@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Every algorithm on every device misses no intersecting pair of any family with rounding=safe.
+#include "algorithms/bodies/origin.h"
 #include "algorithms/narrow_phase/contact_settings.h"
 #include "harness/plans/frames.h"
 #include "harness/verify/oracle/motion_truth.h"
@@ -78,9 +79,10 @@ protected:
         const auto session =
             traversal.prepare(devices, scene, resolve(traversal.parameters(), {}, given, traversal.name()));
         for (const auto& frame : frames) {
-            const Positions positions{Precision::fp32, Placement::rounded, Origin::world,
+            const Positions positions{Precision::fp32, Placement::rounded,
+                                      session->settings()[parameters::origin],
                                       session->settings()[parameters::self]};
-            const auto truth = frame_truth(scene, frame, positions);
+            const auto truth = frame_truth(scene, counted_from(session->origin(), frame), positions);
             const auto result = run_among_all(*session, scene, frame);
             const auto pairs = result.download();
             const auto errors = pair_errors(truth, pairs);
@@ -110,6 +112,7 @@ TEST_P(HardAlgorithms, MissNothing) {
                                    std::array{scene.frame(0), scene.frame(scene.frame_count - 1)},
                                    {{"k", k},
                                     {"self", family.self ? "on" : "off"},
+                                    {"origin", family.distant ? "auto" : "world"},
                                     {"work_items", "64"},
                                     {"pair_capacity", "8192"},
                                     {"contact_rule", "none"}});

@@ -160,6 +160,20 @@ double overlapping(const HardFamily& family, double e) {
     return static_cast<double>(frame_truth(scene, scene.frame(0), Precision::fp32).overlapping.size());
 }
 
+/// Intersecting pairs of the first frame that are lost where vertices are rounded in world coordinates.
+double lost_by_rounding(const HardFamily& family, double e) {
+    const auto scene = scene_of(family, e);
+    const auto met = [&](const Positions& positions) {
+        auto truth = frame_truth(scene, scene.frame(0), positions);
+        truth.overlapping.insert(truth.overlapping.end(), truth.touching.begin(), truth.touching.end());
+        std::ranges::sort(truth.overlapping);
+        return truth.overlapping;
+    };
+    const auto exact = met({Precision::fp32, Placement::exact}), rounded = met(Precision::fp32);
+    return static_cast<double>(std::ranges::count_if(
+        exact, [&](const Pair& pair) { return !std::ranges::binary_search(rounded, pair); }));
+}
+
 /// Largest difference between a vertex transformed in single and in double precision.
 double drift(const HardFamily& family, double e) {
     const auto scene = scene_of(family, e);
@@ -315,7 +329,8 @@ const std::vector<Case> cases{{"slab-touch", missed_by_slabs(18, true), 1, 1000}
                               {"half-turn", way, 16, 64},
                               {"far-lever", way, 16, 1024},
                               {"tiny-turn", way, 14, 4},
-                              {"equal-speed", largest_coordinate, 3, 20}};
+                              {"equal-speed", largest_coordinate, 3, 20},
+                              {"far", lost_by_rounding, 1, 1e6}};
 
 TEST(HardDifficulty, MovesItsMetric) {
     ASSERT_EQ(cases.size(), hard_families().size());

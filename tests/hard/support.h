@@ -2,7 +2,9 @@
 // Measurements on families of hard cases: the truth, and methods that are known to fail.
 #pragma once
 
+#include "algorithms/bodies/origin.h"
 #include "geometry/decision.h"
+#include "harness/verify/oracle/frame_truth.h"
 #include "scenes/hard/hard.h"
 
 #include <algorithm>
@@ -106,6 +108,17 @@ inline bool slabs_overlap(const HardPair& pair, const std::vector<std::array<int
         if (low[1] - high[0] > tolerance || low[0] - high[1] > tolerance) return false;
     }
     return true;
+}
+
+/// Setting origin of the cells that a family is made for.
+inline Origin origin_for(const HardFamily& family) {
+    return family.distant ? Origin::automatic : Origin::world;
+}
+
+/// The truth of a scene's first frame as cells in single precision with this origin round it.
+inline FrameTruth rounded_truth(const Scene& scene, Origin origin, SelfPairs self = SelfPairs::off) {
+    return frame_truth(scene, counted_from(origin_of(scene, origin), scene.frame(0)),
+                       {Precision::fp32, Placement::rounded, origin, self});
 }
 
 inline std::vector<const HardFamily*> pair_families(bool rigid) {
