@@ -51,6 +51,12 @@ void check_motion_settings(const Settings& settings) {
                                      settings.text("decision")));
 }
 
+/// Whether a session of the scene is known to count from the world's origin, and to centre no mesh.
+bool is_at_world_origin(const Scene* scene, Origin origin) {
+    return scene != nullptr && scene->frame && origin_of(*scene, origin) == Eigen::Vector3d::Zero()
+           && !has_far_mesh(*scene);
+}
+
 /// "host + opencl:0"
 std::string names_of(std::span<Device* const> devices) {
     std::vector<std::string> names;
@@ -115,8 +121,26 @@ FrameResult Session::run_among(const FrameInput& input, std::optional<std::span<
     return run_checked({frame, input.next}, body_pairs);
 }
 
+void Session::begin_at(const Scene& scene, std::shared_ptr<const Scene> centred) {
+    scene_ = &scene;
+    centred_ = std::move(centred);
+    const auto setting = geometry_of(settings()).origin;
+    first_frame_places_ = setting == Origin::automatic && !scene.frame;
+    is_placed_ = !first_frame_places_;
+    origin_ = origin_of(scene, setting);
+}
+
+void Session::place(const Frame& frame) {
+    if (is_placed_) return;
+    const auto origin = middle_of(*scene_, frame);
+    if (origin == origin_) return;
+    origin_ = origin;
+    do_move_origin();
+}
+
 FrameResult Session::run_checked(const FrameInput& input,
                                  std::optional<std::span<const BodyPair>> body_pairs) {
+    place(input.frame);
     if (origin_ == Eigen::Vector3d::Zero() && !centred_) return finished(do_run(input, body_pairs));
     const auto frame = as_on_devices(input.frame);
     if (input.next == nullptr) return finished(do_run(frame, body_pairs));
@@ -135,6 +159,8 @@ FrameResult Session::run_among(const DeviceFrameInput& input,
     check_pairs(body_pairs);
     check_motion(input.next != nullptr);
     check_fits(*scene_, input.frame);
+    if (!is_placed_ && devices().size() == 1) // several devices refuse the frame
+        place(downloaded(*devices().front(), *scene_, input.frame));
     if (input.next == nullptr || input.frame.skipped == input.next->skipped) {
         if (input.next != nullptr) check_fits(*scene_, *input.next);
         return finished(do_run_device_input(input, body_pairs));
@@ -145,9 +171,12 @@ FrameResult Session::run_among(const DeviceFrameInput& input,
     return finished(do_run_device_input({frame, input.next}, body_pairs));
 }
 
-FrameResult Session::finished(FrameResult result) const {
+/// A session inside this one has subtracted an origin of its own, if any.
+FrameResult Session::finished(FrameResult result) {
     for (auto* device : devices()) device->check_guards();
-    result.origin = {origin_.x(), origin_.y(), origin_.z()};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        result.origin[axis] += origin_[static_cast<Eigen::Index>(axis)];
+    is_placed_ = true;
     if (centred_)
         for (auto& part : result.parts) part = owning_part(std::move(part), centred_);
     return result;
@@ -194,6 +223,9 @@ Settings Traversal::fitted(const Settings& settings, const DeviceInfo& info, con
                 "host; leave it out");
     }
     check_motion_settings(settings);
+    if (const auto origin = geometry_of(settings).origin;
+        origin == Origin::world || is_at_world_origin(scene, origin))
+        fitting.set(tandem::parameters::origin(Origin::world));
     if (walks_part(settings) && settings[tandem::parameters::broad] != Broad::sphere_boxes)
         throw InputError("settings first_body_pair and most_body_pairs need broad=sphere_boxes, whose pairs "
                          "the reference numbers too; choose it, or leave them out");
@@ -236,9 +268,7 @@ std::unique_ptr<Session> Traversal::prepare(std::span<Device* const> devices, co
                    : is_published(settings)
                        ? published_session(*this, device, on_devices, fitting.front())
                        : std::make_unique<ResidentSession>(*this, device, on_devices, fitting.front());
-    session->origin_ = origin_of(scene, origin);
-    session->scene_ = &scene;
-    session->centred_ = moved;
+    session->begin_at(scene, moved);
     return session;
 }
 
@@ -258,13 +288,10 @@ std::unique_ptr<Session> Traversal::prepare(Device& device, const Scene& scene, 
                         settings.text("broad")));
     if (!scene.frame)
         throw InputError("ranks of a job divide the bodies of frame 0, and Scene::frame is not set; set it");
-    const auto origin = geometry_of(settings).origin;
-    const auto moved = centred(scene, origin);
+    const auto moved = centred(scene, geometry_of(settings).origin);
     std::unique_ptr<Session> session = std::make_unique<RankSession>(
         *this, device, moved ? *moved : scene, fitted(settings, device.info(), &scene), ranks);
-    session->origin_ = origin_of(scene, origin);
-    session->scene_ = &scene;
-    session->centred_ = moved;
+    session->begin_at(scene, moved);
     return session;
 }
 

@@ -29,6 +29,9 @@ public:
         pipeline_.answers->expect(pairs, contacts_a_pair);
     }
 
+    /// The next frame also places and bounds fixed bodies.
+    void forget_places() { stale_ = true; }
+
     // For vertices that do not come from the host's memory (DeviceVertexExchange):
 
     /// From the next frame on, other code writes the vertices of these deformable bodies on the device,
@@ -51,6 +54,7 @@ private:
     };
 
     void do_reset() override;
+    void do_move_origin() override { forget_places(); }
     FrameResult do_run(const FrameInput& input,
                        std::optional<std::span<const BodyPair>> body_pairs) override {
         return run_input({.host = &input, .body_pairs = body_pairs});

@@ -37,8 +37,11 @@ class Session {
 public:
     virtual ~Session() = default;
 
-    /// Clears state that is carried from frame to frame.
-    void reset() { do_reset(); }
+    /// Clears state that is carried from frame to frame; the next frame is the first again.
+    void reset() {
+        is_placed_ = !first_frame_places_;
+        do_reset();
+    }
     /// Finds the candidate pairs of `frame` and their contacts, and waits for their numbers. The session
     /// finds the body pairs, according to setting broad. Throws InputError for a frame that does not pass
     /// check_frame (bodies/check_input.h), and with motion=linear, which needs the frame's successor.
@@ -73,7 +76,8 @@ public:
     /// frame in the host's memory. The device finds body pairs, independent of setting broad. Throws
     /// InputError if a buffer is missing or too small, and as for the host's memory if coordinates do not
     /// pass check_range or a rotation has zero length. Throws InputError also if the host needs the numbers:
-    /// with several devices, residency=published, placement=exact, or a device without double.
+    /// with several devices, residency=published, placement=exact, or a device without double. With
+    /// origin=auto and no Scene::frame, the host downloads the first frame, once.
     FrameResult run(const DeviceFrame& frame) { return run_among(frame, std::nullopt); }
     /// The same for these body pairs, at most 2^32 - 1.
     FrameResult run(const DeviceFrame& frame, std::span<const BodyPair> body_pairs) {
@@ -96,14 +100,20 @@ public:
     std::optional<std::span<const std::uint32_t>> owned() const { return do_owned(); }
     /// The settings after Traversal::fitted.
     const Settings& settings() const { return do_settings(); }
-    /// Origin of the coordinates on the devices, by setting origin.
+    /// Origin of the coordinates on the devices, by setting origin. With origin=auto in a scene without
+    /// Scene::frame, the first frame that runs fixes it, and after reset() the next one.
     const Eigen::Vector3d& origin() const { return origin_; }
     /// What the kernels of the last run read, in memory of the only device, relative to origin(). Null for
     /// sessions that do not run frames in the device's memory.
     const Bodies* bodies() const { return do_bodies(); }
 
 private:
-    friend class Traversal; // sets scene_, centred_ and origin_
+    friend class Traversal; // calls begin_at
+    /// Sets scene and origin of a new session. `centred`: what the devices have in place of the scene; null:
+    /// the same.
+    void begin_at(const Scene& scene, std::shared_ptr<const Scene> centred);
+    /// Takes the origin of the first frame, unless it is fixed.
+    void place(const Frame& frame);
     /// Called in every run, because sessions may share a device with other settings.
     void set_threads() const;
     void check_pairs(std::optional<std::span<const BodyPair>> body_pairs) const;
@@ -114,10 +124,13 @@ private:
     FrameResult run_checked(const FrameInput& input, std::optional<std::span<const BodyPair>> body_pairs);
     /// The frame as the devices have it: relative to the origin, and to the middles of centred meshes.
     Frame as_on_devices(const Frame& frame) const;
-    /// Completes a frame's result, and checks the devices' guards.
-    FrameResult finished(FrameResult result) const;
+    /// Completes a frame's result, checks the devices' guards, and fixes the origin.
+    FrameResult finished(FrameResult result);
 
     virtual void do_reset() = 0;
+    /// Called before a frame with another origin than the last: what earlier frames left on the devices is
+    /// relative to that.
+    virtual void do_move_origin() {}
     /// `input` has a successor with motion=linear only, which skips the same tetrahedra.
     virtual FrameResult do_run(const FrameInput& input,
                                std::optional<std::span<const BodyPair>> body_pairs) = 0;
@@ -131,6 +144,8 @@ private:
     virtual const Bodies* do_bodies() const { return nullptr; }
 
     Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
+    bool first_frame_places_ = false;      ///< the first frame decides the origin
+    bool is_placed_ = true;                ///< the origin is fixed until reset()
     const Scene* scene_ = nullptr;         ///< the argument of prepare()
     std::shared_ptr<const Scene> centred_; ///< what the devices have in its place; null: the same
 };

@@ -169,6 +169,27 @@ class Records(Case):
             self.assertEqual(record["work"]["candidate_pairs"][0] > 0, own == "on")
             self.assertEqual((record["agreement"]["missing"], record["agreement"]["extra"]), (0, 0))
 
+    def test_scenes_near_the_worlds_origin_have_the_keys_of_origin_world(self):
+        """So that records from before origin=auto was the default remain comparable. Where no other origin is possible, a line says so."""
+        exact = ("--set", "placement=exact", "--set", "precision=double")
+        far = [word for x in (0, 0.7) for word in ("--pose", f"{6.4e6 + x} 0 0 1 0 0 0")]
+        found = {}
+        for name, *words in (("near",), ("world", "--set", "origin=world"), ("far", *far), ("exact", *far, *exact), ("near and exact", *exact),
+                             ("published", *far, "--preset", "published")):
+            out = self.work / f"origin-{name}.jsonl"
+            status, text, errors = tandem("run", "--mesh", self.good, "--mesh", self.good, "--device", "host", "--algorithm", "chunked", "--repeat", 1, "--quiet",
+                                          *words, "--out", out)
+            self.assertEqual(status, 0, text)
+            self.assertEqual(errors, ["tandem: 1 cell with placement=exact and precision=double: coordinates count from the world's origin, which is far from the "
+                                      "scene; choose precision=float, or move the scene"] if name == "exact" else [])
+            record, = self.records(out)
+            self.assertEqual(record["settings"]["origin"], "auto" if name == "far" else "world")
+            self.assertEqual(record["asked"].get("origin"), None if name in ("world", "far", "published") else "auto")
+            self.assertIn(f"origin={record['settings']['origin']},", record["key"])
+            found[name] = record
+        self.assertEqual(found["near"]["key"], found["world"]["key"])
+        self.assertEqual(found["near"]["work"]["digest"], found["world"]["work"]["digest"])
+
     def full_record(self):
         """A record with every optional part, but few entries of maps and lists whose entries all have the same fields."""
         out = self.work / "schema.jsonl"

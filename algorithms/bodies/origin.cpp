@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/bodies/origin.h"
 
-#include "base/error.h"
-
 #include <cmath>
 
 namespace tandem {
@@ -37,17 +35,17 @@ Box box_around(const Scene& scene, const Frame& frame) {
 
 } // namespace
 
-Eigen::Vector3d origin_of(const Scene& scene, Origin origin) {
-    if (origin == Origin::world || scene.frame_count == 0) return Eigen::Vector3d::Zero();
-    if (!scene.frame)
-        throw InputError(
-            "setting origin=auto takes the middle of frame 0, and Scene::frame is not set; set it, "
-            "or origin=world");
-    const auto box = box_around(scene, scene.frame(0));
+Eigen::Vector3d middle_of(const Scene& scene, const Frame& frame) {
+    const auto box = box_around(scene, frame);
     const double longest = box.sizes().maxCoeff();
     if (!(longest > 0) || !box.min().allFinite() || !box.max().allFinite()) return Eigen::Vector3d::Zero();
     const double step = std::exp2(std::ceil(std::log2(longest)));
     return (box.center() / step).array().round() * step;
+}
+
+Eigen::Vector3d origin_of(const Scene& scene, Origin origin) {
+    if (origin == Origin::world || !scene.frame || scene.frame_count == 0) return Eigen::Vector3d::Zero();
+    return middle_of(scene, scene.frame(0));
 }
 
 Frame counted_from(const Eigen::Vector3d& origin, Frame frame) {

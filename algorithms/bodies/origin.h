@@ -6,10 +6,13 @@
 
 namespace tandem {
 
-/// The origin of coordinates for sessions of the scene. Origin::automatic: the centre of the box around frame
-/// 0, rounded to a multiple of a power of two that is at least the longest side of the box. It is zero for a
-/// scene near the world's origin; for a distant scene, subtracting it rarely needs rounding. Zero if the
-/// scene has no frame or has a coordinate that is not finite.
+/// The centre of the box around a frame of the scene, rounded to a multiple of a power of two that is at
+/// least the longest side of the box. It is zero for a frame near the world's origin; in a distant frame,
+/// subtracting it rarely needs rounding. Zero if a coordinate is not finite.
+Eigen::Vector3d middle_of(const Scene& scene, const Frame& frame);
+
+/// The origin of coordinates for sessions of the scene. Origin::automatic: the middle of frame 0. Zero
+/// without Scene::frame, where the first frame of each session decides.
 Eigen::Vector3d origin_of(const Scene& scene, Origin origin);
 
 /// The frame with coordinates relative to `origin`: one subtraction in double for each vertex of deformable

@@ -31,11 +31,14 @@ Eigen::Vector3d shift_of(const Mesh& mesh) {
     return shift;
 }
 
+bool has_far_mesh(const Scene& scene) {
+    return std::ranges::any_of(scene.meshes, [](const auto& mesh) { return !shift_of(mesh).isZero(0); });
+}
+
 std::shared_ptr<const Scene> centred(const Scene& scene, Origin origin) {
-    if (origin == Origin::world) return nullptr;
+    if (origin == Origin::world || !has_far_mesh(scene)) return nullptr;
     std::vector<Eigen::Vector3d> shifts;
     for (const auto& mesh : scene.meshes) shifts.push_back(shift_of(mesh));
-    if (std::ranges::all_of(shifts, [](const auto& shift) { return shift.isZero(0); })) return nullptr;
     auto result = std::make_shared<Scene>(scene);
     for (std::size_t mesh = 0; mesh < shifts.size(); ++mesh)
         for (auto& vertex : result->meshes[mesh].vertices) vertex -= shifts[mesh];

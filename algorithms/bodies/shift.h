@@ -13,6 +13,9 @@ namespace tandem {
 /// (bodies/README.md, lemma 9).
 Eigen::Vector3d shift_of(const Mesh& mesh);
 
+/// Whether a mesh of the scene has a shift.
+bool has_far_mesh(const Scene& scene);
+
 /// The scene with every mesh centred: its vertices without the mesh's shift, and frames with shifted() poses.
 /// Scene::shifts has the shifts. Null with Origin::world, and if all shifts are 0. `scene` must outlive the
 /// result.

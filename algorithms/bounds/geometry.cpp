@@ -61,10 +61,9 @@ Geometry geometry_of(const Settings& settings) {
         && geometry.rounding != Rounding::directed)
         throw InputError("setting placement=exact goes with rounding=safe or directed, which widen slabs by "
                          "the bound it needs; leave rounding or placement out");
-    if (geometry.origin == Origin::automatic && geometry.placement == Placement::exact
-        && geometry.precision == Precision::fp64)
-        throw InputError("setting origin=auto rounds one difference in double, which the bounds of "
-                         "placement=exact do not cover with precision=double; leave one of the three out");
+    // The difference is rounded once in double, which these bounds do not cover.
+    if (geometry.placement == Placement::exact && geometry.precision == Precision::fp64)
+        geometry.origin = Origin::world;
     if (geometry.motion == Motion::linear && geometry.rounding == Rounding::published)
         throw InputError("setting motion=linear does not go with rounding=published, which has no bound for "
                          "positions between frames; choose rounding=safe");

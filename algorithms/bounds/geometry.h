@@ -30,8 +30,8 @@ std::vector<std::array<int, 3>> directions(const Geometry& geometry);
 /// motion.
 std::span<const Parameter* const> geometry_parameters();
 
-/// The geometry of these settings. Throws InputError if axes does not fit k, placement does not fit rounding,
-/// or origin does not fit placement, or motion does not fit rounding.
+/// The geometry of these settings; with placement=exact and precision=double, origin is world. Throws
+/// InputError if axes does not fit k, placement does not fit rounding, or motion does not fit rounding.
 Geometry geometry_of(const Settings& settings);
 
 /// Defines for kernels that read rows only (rows.clh): precision, placement, motion and group size.

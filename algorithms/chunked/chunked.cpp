@@ -31,9 +31,9 @@ const std::vector<Preset> all_presets{
       seed_threshold(10000000)}},
     {"published",
      "the paper: k = 8, 8000-byte chunks, everything converted and transferred in every frame",
-     {parameters::k(8), parameters::residency(Residency::published), parameters::broad(Broad::sphere_boxes),
-      schedule(Schedule::item), descent(Descent::both), seed_threshold(10000000), parameters::group_size(64),
-      root_test(false)}}};
+     {parameters::k(8), parameters::origin(Origin::world), parameters::residency(Residency::published),
+      parameters::broad(Broad::sphere_boxes), schedule(Schedule::item), descent(Descent::both),
+      seed_threshold(10000000), parameters::group_size(64), root_test(false)}}};
 
 constexpr std::array all_counters{counters::bvtt_nodes, counters::seeds};
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/distributed/rank_session.h"
 
+#include "algorithms/bodies/origin.h"
 #include "algorithms/parameters/table.h"
 #include "algorithms/distributed/agreement.h"
 #include "algorithms/distributed/local_scene.h"
@@ -36,12 +37,17 @@ std::vector<std::uint64_t> counts_of(const FrameResult& result) {
     return counts;
 }
 
-/// The balls of all bodies in frame 0.
-std::vector<Ball> initial_balls(const Scene& scene) {
+/// Frame 0, relative to the origin of the settings.
+Frame start_of(const Scene& scene, const Settings& settings) {
+    return counted_from(origin_of(scene, geometry_of(settings).origin), scene.frame(0));
+}
+
+/// The balls of all bodies.
+std::vector<Ball> balls_of(const Scene& scene, const Frame& frame) {
     DisplacementTracker tracker(scene);
     std::vector<std::uint32_t> all(scene.bodies.size());
     std::iota(all.begin(), all.end(), 0u);
-    tracker.set_reference(scene.frame(0), all);
+    tracker.set_reference(frame, all);
     std::vector<Ball> balls;
     balls.reserve(all.size());
     for (const auto body : all) balls.push_back(tracker.ball(body));
@@ -61,12 +67,13 @@ RankSession::RankSession(const Traversal& traversal, Device& device, const Scene
       ghosts_(scene, geometry_of(settings_), ranks),
       device_exchange_(ranks, device.info(), scene, settings_),
       tracker_(scene),
-      balls_(initial_balls(scene)),
       has_successors_(settings_[parameters::motion] == Motion::linear) {
+    const auto start = start_of(scene, settings_);
+    balls_ = balls_of(scene, start);
     partition_.repartition(balls_);
     // Compilation and allocation take place before the first frame, which is measured.
     Report own;
-    exchange(scene.frame(0), own);
+    exchange(start, own);
     throw_failure(gather_reports(own));
 }
 

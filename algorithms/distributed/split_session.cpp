@@ -30,6 +30,10 @@ private:
     void do_reset() override {
         for (const auto& session : sessions_) session->reset();
     }
+    void do_move_origin() override {
+        has_moved_ = true;
+        for (const auto& session : sessions_) session->forget_places();
+    }
     FrameResult do_run(const FrameInput& input, std::optional<std::span<const BodyPair>> body_pairs) override;
     void do_count_work(bool on) override {
         for (const auto& session : sessions_) session->count_work(on);
@@ -48,6 +52,7 @@ private:
     std::vector<std::unique_ptr<ResidentSession>> sessions_;
     std::optional<BroadSweep> broad_; ///< where the host finds body pairs
     RepartitionLoop partition_;
+    bool has_moved_ = false;                             ///< the partition is of another origin
     std::vector<Subdomain> subdomains_;                  ///< by device
     std::vector<bool> is_applied_;                       ///< by device: its session has its subdomain
     std::vector<std::vector<Role>> roles_;               ///< by device and body, of subdomains_
@@ -71,10 +76,11 @@ SplitSession::SplitSession(const Traversal& traversal, std::span<Device* const> 
 
 /// Repartitions the bodies when the partition is invalid or the load is unbalanced. Returns whether it did.
 bool SplitSession::repartition_if_needed(const FrameInput& input) {
-    const bool is_new = partition_.is_due(input);
+    const bool is_new = partition_.is_due(input) || has_moved_;
     if (is_new) {
         const HostWork work(*devices_.front(), Stage::broad, "partition bodies");
         partition_.repartition(input.frame);
+        has_moved_ = false;
         // A new partition can expire on the path to the frame's successor. The skin of the next one is
         // larger.
         while (input.next != nullptr && partition_.is_due(input)) partition_.repartition(input.frame);

@@ -74,6 +74,7 @@ constexpr std::array<const Parameter*, 13> own{
 /// uploaded, a full local queue ends the launch, and body pairs from boxes of spheres.
 std::vector<Assignment> published(std::initializer_list<Assignment> sizes) {
     std::vector<Assignment> all{parameters::k(8),
+                                parameters::origin(Origin::world),
                                 parameters::residency(Residency::published),
                                 parameters::broad(Broad::sphere_boxes),
                                 upload(QueueUpload::queues),

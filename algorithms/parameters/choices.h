@@ -40,7 +40,7 @@ enum class Motion {
 /// Origin of coordinates on devices.
 enum class Origin {
     world,
-    automatic ///< the middle of the scene in its first frame, or zero if that is near enough
+    automatic ///< the middle of the scene in its first frame; zero if that is near enough (bodies/origin.h)
 };
 
 /// Method that finds body pairs.

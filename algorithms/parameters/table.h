@@ -65,12 +65,13 @@ inline constexpr Setting<Motion> motion{
     "successor, so that no pair that meets on the way is missed; contacts are those of the frame"};
 inline constexpr Setting<Origin> origin{
     "origin",
-    Origin::world,
+    Origin::automatic,
     {{"world", Origin::world}, {"auto", Origin::automatic}},
     "",
-    "origin of coordinates on devices: world: the world's origin; auto: a point in the middle of the scene's "
-    "first frame, and rigid meshes far from their own origin are centred, so that a scene far from the "
-    "world's origin is as accurate as one near it"};
+    "origin of coordinates on devices: auto: a point in the middle of the scene's first frame, and rigid "
+    "meshes far from their own origin are centred, so that a scene far from the world's origin is as accurate "
+    "as one near it; world: the world's origin. auto is world where neither changes anything, and for "
+    "placement=exact with precision=double"};
 
 inline constexpr auto builder =
     Setting<Builder>{

@@ -86,9 +86,16 @@ std::shared_ptr<const Frame> FrameRange::frame(std::size_t index) const {
     return recent_;
 }
 
+Eigen::Vector3d FrameRange::origin(Origin origin) const {
+    if (origin == Origin::world) return Eigen::Vector3d::Zero();
+    const std::lock_guard lock(mutex_);
+    if (!origin_) origin_ = origin_of(scene_, origin); // makes frame 0
+    return *origin_;
+}
+
 std::shared_ptr<const Frame> FrameRange::frame(std::size_t index, Origin origin) const {
     if (origin == Origin::world) return frame(index);
-    return std::make_shared<const Frame>(counted_from(origin_of(scene_, origin), *frame(index)));
+    return std::make_shared<const Frame>(counted_from(this->origin(origin), *frame(index)));
 }
 
 FrameState FrameRange::state(std::size_t index, Motion motion, Origin origin) const {

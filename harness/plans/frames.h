@@ -48,6 +48,8 @@ public:
     /// Frame first() + index, which does not change while the caller keeps it. Do not call this in a timed
     /// span. Throws InputError when a recording can no longer be read.
     std::shared_ptr<const Frame> frame(std::size_t index) const;
+    /// The origin of the scene's sessions with that setting.
+    Eigen::Vector3d origin(Origin origin) const;
     /// The same frame with coordinates relative to the origin of that setting, as a session computes it.
     std::shared_ptr<const Frame> frame(std::size_t index, Origin origin) const;
     /// The same with its successor if `motion` is linear, which needs has_successor for the last frame. Both
@@ -64,9 +66,10 @@ private:
     std::size_t first_, last_;
     std::size_t made_; ///< size(), or one more with a successor
     Flaws flaws_;
-    std::optional<FlawSearch> left_out_; ///< set when frames have tetrahedra to leave out
-    Frames stored_;                      ///< all frames or none
-    mutable std::mutex mutex_;           ///< guards the next two
+    std::optional<FlawSearch> left_out_;            ///< set when frames have tetrahedra to leave out
+    Frames stored_;                                 ///< all frames or none
+    mutable std::mutex mutex_;                      ///< guards the next three
+    mutable std::optional<Eigen::Vector3d> origin_; ///< of Origin::automatic
     mutable std::size_t recent_index_ = 0;
     mutable std::shared_ptr<const Frame> recent_;
 };

@@ -15,6 +15,7 @@
 #include "base/text_lines.h"
 #include "base/error.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -186,6 +187,15 @@ void print_scene(const Job& job) {
     reasons.erase(std::string());
     for (const auto& reason : reasons)
         print_message("tandem: scene {}: nothing can meet: {}\n", visible(job.scene.name), reason);
+    const auto far = std::ranges::count_if(job.cells, [](const Cell& cell) {
+        return cell.candidates.empty() && cell.settings[parameters::origin] == Origin::automatic
+               && geometry_of(cell.settings).origin == Origin::world;
+    });
+    if (far > 0 && job.range.origin(Origin::automatic) != Eigen::Vector3d::Zero())
+        print_message(
+            "tandem: {} cell{} with placement=exact and precision=double: coordinates count from the world's "
+            "origin, which is far from the scene; choose precision=float, or move the scene\n",
+            far, far == 1 ? "" : "s");
 }
 
 bool misses_against_its_promise(const Measurement& m) {

@@ -65,7 +65,8 @@ std::filesystem::path checks_folder(const RunOptions& options);
 
 /// One line that describes the scene, one for inverted tetrahedra and one for flawed ones, if there are any.
 std::string scene_text(const Scene& scene, const FrameRange& range);
-/// Prints it, and on standard error what its meshes have, and why nothing can meet in some of the cells.
+/// Prints it, and on standard error what is remarkable about its meshes, why nothing can meet in some of the
+/// cells, and a line where cells do not count from the middle of a far scene.
 void print_scene(const Job& job);
 
 /// Whether a cell missed pairs although its rounding is safe or directed. These roundings miss no pair that

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/simulate/session.h"
 
+#include "harness/sampling/ranks/rank_team.h"
 #include "base/digest.h"
 #include "scenes/dynamics_settings.h"
 #include "base/error.h"
@@ -33,9 +34,10 @@ void append_bytes(std::vector<std::byte>& bytes, const void* data, std::size_t s
 SimulationSession::SimulationSession(const SimulateOptions& options, const Scene& scene, const Cell& cell)
     : settings_(describe(*scene.dynamics)), number_(new_number()) {
     // The settings that contacts depend on. Devices and schedules do not change them.
+    const auto used = session_settings(cell, scene);
     for (const auto* name :
          {"k", "axes", "precision", "rounding", "placement", "origin", "contact_rule", "decision"})
-        settings_ += fmt::format(" {}={}", name, cell.settings.text(name));
+        settings_ += fmt::format(" {}={}", name, used.text(name));
     if (options.recording.empty()) return;
     const auto header = recording_of(options.scene, scene, scene.dynamics->stepping.step);
     writer_.emplace(options.resume ? RecordingWriter::resume(options.recording, header)

@@ -2,7 +2,6 @@
 #include "python/core/collider.h"
 
 #include "algorithms/bodies/nothing_meets.h"
-#include "algorithms/bodies/origin.h"
 #include "algorithms/bodies/range.h"
 #include "algorithms/parameters/table.h"
 #include "backends/cuda/cuda_device.h"
@@ -92,7 +91,6 @@ Collider::Collider(std::vector<Mesh> meshes, const ColliderOptions& options) : a
         tandem::algorithm(algorithm_); // reports an unknown name before devices are opened
     open_devices(options);
     scene_ = scene_of(std::move(meshes), options);
-    scene_.frame = [this](std::size_t) { return first_ ? *first_ : rest_frame(scene_); };
     prepare(options);
 }
 
@@ -169,7 +167,6 @@ void Collider::prepare(const ColliderOptions& options) {
     }
     precision_ = geometry_of(settings).precision;
     motion_ = settings[parameters::motion];
-    origin_ = geometry_of(settings).origin;
     if (options.worlds > 1)
         world_pairs_.emplace(scene_, geometry_of(settings), settings[parameters::broad],
                              settings[parameters::self], options.worlds);
@@ -178,22 +175,6 @@ void Collider::prepare(const ColliderOptions& options) {
     check_range(scene_, rest_frame(scene_), precision_);
     if (traversal == nullptr) return;
     session_ = traversal->prepare(devices_, scene_, settings);
-    prepared_ = std::move(settings);
-}
-
-void Collider::begin_at(const Input& input) {
-    if (first_ || origin_ != Origin::automatic) return;
-    first_ = input.on_device ? downloaded(*devices_.front(), scene_, device_frames(input).frame)
-                             : host_frames(input).frame;
-    if (!session_ || session_->origin() == origin_of(scene_, origin_)) return;
-    ++frames_; // older answers must not read the new session's memory
-    try {
-        session_ = tandem::algorithm(algorithm_)
-                       .prepare(devices_, scene_, prepared_ ? *prepared_ : session_->settings());
-    } catch (...) {
-        first_.reset(); // the next run tries again, instead of keeping another origin
-        throw;
-    }
 }
 
 std::optional<std::vector<BodyPair>> Collider::world_pairs(const FrameInput& frames) const {
@@ -245,7 +226,6 @@ Run Collider::run(const Input& input) {
     const auto own = lock();
     check(input);
     return with_signals([&] {
-        begin_at(input);
         if (input.on_device) return run_frames(device_frames(input), input.body_pairs);
         auto run = run_frames(host_frames(input), input.body_pairs);
         run.frame = host_input_->last();
@@ -270,7 +250,6 @@ std::vector<Trial> Collider::tune(const Input& input, double seconds) {
             fmt::format("tune: algorithm {} was named; make the collider with algorithm=auto", algorithm_));
     check(input);
     return with_signals([&] {
-        begin_at(input);
         return input.on_device ? choose_for(device_frames(input), seconds)
                                : choose_for(host_frames(input), seconds);
     });
@@ -278,7 +257,6 @@ std::vector<Trial> Collider::tune(const Input& input, double seconds) {
 
 void Collider::reset() {
     const auto own = lock();
-    first_.reset();
     if (session_) session_->reset();
 }
 

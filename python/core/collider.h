@@ -93,9 +93,6 @@ private:
     /// motion=linear, and for an update without a frame in host memory.
     void check(const Input& input) const;
     void check_update(const Input& input) const;
-    /// Setting origin=auto: takes the origin of this frame, the first, and prepares the session again if it
-    /// differs.
-    void begin_at(const Input& input);
     /// A checked input as frames. The next call overwrites them.
     FrameInput host_frames(const Input& input);
     DeviceFrameInput device_frames(const Input& input);
@@ -122,15 +119,12 @@ private:
     std::vector<Cell> candidates_; ///< candidates of algorithm auto
     Precision precision_ = Precision::fp32;
     Motion motion_ = Motion::none;
-    std::optional<WorldPairs> world_pairs_; ///< of several worlds
-    Origin origin_ = Origin::world;
+    std::optional<WorldPairs> world_pairs_;                 ///< of several worlds
     std::optional<HostInput> host_input_, next_host_input_; ///< of frames, and of their successors
     std::optional<DeviceInput> device_input_;
     std::uint64_t frames_ = 0;         ///< number of frames that sessions began to run
     bool is_last_on_device_ = false;   ///< whether the last frame was in memory of the device
     std::unique_ptr<Session> session_; ///< null until an algorithm is chosen
-    std::optional<Settings> prepared_; ///< of the session; none of a chosen one
-    std::optional<Frame> first_;       ///< the first frame, if it determines the origin
     std::recursive_mutex mutex_;
     bool runs_ = false; ///< a call works on the devices; under mutex_
 };

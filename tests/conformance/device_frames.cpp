@@ -94,7 +94,30 @@ TEST_P(DeviceFrames, UseTheOriginOfTheSession) {
         frame.poses[1] = {};
         return frame;
     };
-    expect_same_answers("tiled", scene, {{"k", "18"}, {"origin", "auto"}, {"precision", "double"}});
+    expect_same_answers("tiled", scene, {{"k", "18"}, {"precision", "double"}});
+}
+
+/// Without Scene::frame the first frame decides, from either memory; a frame that is refused does not.
+TEST_P(DeviceFrames, DecideTheOriginOfTheSession) {
+    const auto scene = crowd(5, 8, 1.2);
+    auto bare = scene;
+    bare.frame = nullptr;
+    const auto from_host = prepare("tiled", bare, {}), from_device = prepare("tiled", bare, {});
+    for (const double x : {1e5, 0.0, -3e6}) {
+        auto frame = scene.frame(0);
+        for (auto& pose : frame.poses) pose.translation.x() += x;
+        for (auto& vertex : frame.deformed[1]) vertex.x() += x;
+        frame.poses[1] = {};
+        Rows rows(frame, false), flawed(scene.frame(0), false);
+        flawed.poses[7 * 3] = 1e37;
+        EXPECT_NE(rejection([&] { from_device->run(flawed.uploaded_to(on)); }), "");
+        const auto right = from_host->run(rows.host);
+        expect_equal(from_device->run(rows.uploaded_to(on)), right);
+        EXPECT_EQ(from_device->origin(), from_host->origin());
+        EXPECT_EQ(from_device->origin().x() != 0, x != 0);
+        from_host->reset();
+        from_device->reset();
+    }
 }
 
 TEST_P(DeviceFrames, CentreDistantMeshes) {

@@ -59,6 +59,30 @@ TEST_F(Partitions, AnswersEqualOneDevice) {
         }
 }
 
+/// Without Scene::frame the first frame decides the origin of all devices, after reset() the next one: bodies
+/// that move by as much as the origin, but for the fixed one, have not moved for a partition that is kept.
+TEST_F(Partitions, TheFirstFrameDecidesTheOriginOfAllDevices) {
+    const auto scene = procession(24, 2, 0.35);
+    auto bare = scene;
+    bare.frame = nullptr;
+    for (const std::string broad : {"device", "tight"}) {
+        const auto both = on_two_devices(algorithm("tiled"), bare, {{"broad", broad}});
+        const auto one = on_host(algorithm("tiled"), bare, {{"broad", broad}});
+        for (const double offset : {0x1p20, 0.0, -0x1p12}) {
+            const auto away = moved(scene, {offset, 0, 0});
+            for (std::size_t i = 0; i < 2; ++i) {
+                const auto result = both->run(away.frame(i));
+                ASSERT_GT(result.contacts, 0u);
+                expect_equal(result, one->run(away.frame(i)));
+            }
+            EXPECT_EQ(both->origin(), one->origin());
+            EXPECT_EQ(both->origin().x() != 0, offset != 0);
+            both->reset();
+            one->reset();
+        }
+    }
+}
+
 /// In a row, a device needs its own half and the neighbours at the cut, and processes all of them.
 TEST_F(Partitions, EachDeviceRefitsOnlyTheBodiesItNeeds) {
     const auto scene = procession(60, 2, 0.01);

@@ -75,6 +75,7 @@ protected:
     void expect_none_missed(const Traversal& traversal, const Scene& scene, std::span<const Frame> frames,
                             SettingTexts given) {
         if (traversal.name() == "gproximity") given["queue_bytes"] = "1048576";
+        given["origin"] = "world"; // some families are hard because they are far from it
         const std::array devices{&device(GetParam())};
         const auto session =
             traversal.prepare(devices, scene, resolve(traversal.parameters(), {}, given, traversal.name()));
@@ -168,6 +169,7 @@ TEST_P(HardAlgorithms, MissNothingOnTheWay) {
                 SettingTexts given{{"k", family.motion && GetParam() == "host" ? "26" : "18"},
                                    {"precision", precision},
                                    {"motion", "linear"},
+                                   {"origin", "world"},
                                    {"self", family.self ? "on" : "off"},
                                    {"work_items", "64"},
                                    {"pair_capacity", "8192"},

@@ -3,6 +3,7 @@
 // every pair is found once, and an error of one rank is an error of all. Every rank runs every test.
 #include "algorithms/answer/digest.h"
 #include "algorithms/bodies/ball.h"
+#include "algorithms/distributed/job_session.h"
 #include "base/error.h"
 #include "tests/ranks/support.h"
 
@@ -246,6 +247,24 @@ TEST_F(RankSessions, CountsAndDigestsWithoutPairs) {
                 EXPECT_EQ(summed(result.digest()), right.digest());
             }
         }
+    }
+}
+
+/// All ranks count from the middle of frame 0, and the job's contacts are in world coordinates.
+TEST_F(RankSessions, FarScenesHaveOneOrigin) {
+    const auto& traversal = algorithm("tiled");
+    const auto near = procession(24, 3, 0.35), away = moved(near, {0x1p20, -0x1p22, 0});
+    expect_frames_equal(away, traversal, own_device());
+    const auto right = alone(traversal, near)->run(near.frame(0)).download_contacts();
+    JobSession session(*job, traversal.prepare(own_device(), away, settings_of(traversal), *job));
+    const auto found = session.run_unchecked(own_frame(away, session, 0)).download_contacts();
+    if (!job->is_first()) return;
+    ASSERT_EQ(found.size(), right.size());
+    ASSERT_GT(right.size(), 100u);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        EXPECT_EQ(found[i].pair, right[i].pair);
+        EXPECT_NEAR(found[i].point[0], right[i].point[0] + 0x1p20, 1e-4);
+        EXPECT_NEAR(found[i].point[1], right[i].point[1] - 0x1p22, 1e-4);
     }
 }
 

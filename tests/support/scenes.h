@@ -145,6 +145,19 @@ inline Scene procession(std::uint32_t bodies, std::size_t frames, double step) {
     return scene;
 }
 
+/// The scene with all bodies moved.
+inline Scene moved(Scene scene, const Eigen::Vector3d& offset) {
+    scene.frame = [near = scene.frame, offset](std::size_t number) {
+        auto frame = near(number);
+        for (std::size_t body = 0; body < frame.poses.size(); ++body) {
+            if (frame.deformed[body].empty()) frame.poses[body].translation += offset;
+            for (auto& vertex : frame.deformed[body]) vertex += offset;
+        }
+        return frame;
+    };
+    return scene;
+}
+
 /// Boxes around a centre, closer in some frames than in others: the numbers of pairs and contacts grow and
 /// shrink from frame to frame, by small and large factors.
 inline Scene breathing(std::size_t bodies) {

@@ -123,12 +123,6 @@ TEST_F(CheckInput, ScenesAreCheckedBeforeTheyArePrepared) {
     for (const auto& [change, expected] : mistakes) EXPECT_THAT(of_scene(change), HasSubstr(expected));
     EXPECT_EQ(of_scene([](Scene& scene) { scene.meshes.emplace_back(); }), "") << "no body has this mesh";
     EXPECT_EQ(of_scene([](Scene& scene) { scene.frame = nullptr; }), "") << "no setting needs frame 0";
-    auto scene = scene_;
-    scene.frame = nullptr;
-    EXPECT_THAT(mistake([&] {
-                    prepared(scene, {{"origin", "auto"}});
-                }),
-                HasSubstr("Scene::frame is not set"));
 }
 
 TEST_F(CheckInput, SettingsByName) {

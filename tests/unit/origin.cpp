@@ -37,6 +37,7 @@ const Vector far_offset(4096, -(1 << 20), 1 << 13);
 TEST(Origin, OfACentredSceneIsTheWorldOrigin) {
     EXPECT_EQ(origin_of(crowd_at(Vector::Zero()), Origin::automatic), Vector::Zero());
     EXPECT_EQ(origin_of(crowd_at(far_offset), Origin::world), Vector::Zero());
+    EXPECT_EQ(origin_of(Scene{}, Origin::automatic), Vector::Zero()) << "the first frame decides";
 }
 
 TEST(Origin, OfAFarSceneIsInsideIt) {
@@ -85,9 +86,7 @@ TEST_P(OriginSessions, AFarSceneGivesTheSameResultsAsANearOne) {
     const auto near = crowd_at(Vector::Zero()), away = crowd_at(far_offset);
     for (const SettingTexts& settings : {SettingTexts{}, SettingTexts{{"residency", "published"}},
                                          SettingTexts{{"placement", "exact"}, {"broad", "tight"}}}) {
-        auto counted = settings;
-        counted.insert_or_assign("origin", "auto");
-        const auto near_session = prepare(near, settings), far_session = prepare(away, counted);
+        const auto near_session = prepare(near, settings), far_session = prepare(away, settings);
         EXPECT_EQ(far_session->origin(), far_offset);
         for (std::size_t i = 0; i < 2; ++i) {
             const auto expected = near_session->run(near.frame(i)), found = far_session->run(away.frame(i));
@@ -101,6 +100,75 @@ TEST_P(OriginSessions, AFarSceneGivesTheSameResultsAsANearOne) {
                     ASSERT_EQ(moved[c].point[axis], points[c].point[axis] + far_offset[axis]);
         }
     }
+}
+
+/// The scene without its frames, as applications make it.
+Scene without_frames(Scene scene) {
+    scene.frame = nullptr;
+    return scene;
+}
+
+/// After reset() the next frame decides. Body 0 is fixed, and must move with the origin.
+TEST_P(OriginSessions, WithoutFramesOfTheSceneTheFirstOneDecides) {
+    const auto near = crowd_at(Vector::Zero()), away = crowd_at(far_offset), bare = without_frames(near);
+    const auto input = [](const Frame& frame, const Frame& next, const Session& session) {
+        return FrameInput(frame, session.settings()[parameters::motion] == Motion::linear ? &next : nullptr);
+    };
+    for (const SettingTexts& settings :
+         {SettingTexts{}, SettingTexts{{"residency", "published"}}, SettingTexts{{"placement", "exact"}},
+          SettingTexts{{"broad", "device"}}, SettingTexts{{"motion", "linear"}, {"decision", "exact"}}}) {
+        const auto session = prepare(bare, settings), right = prepare(near, settings);
+        const auto expect = [&](const Scene& at, std::size_t i, const Vector& origin) {
+            const auto frame = at.frame(i), next = at.frame(1 - i);
+            const auto expected_frame = near.frame(i), expected_next = near.frame(1 - i);
+            const auto found = session->run(input(frame, next, *session));
+            const auto expected = right->run(input(expected_frame, expected_next, *right));
+            EXPECT_GT(expected.contacts, 100u);
+            EXPECT_EQ(found.digest(), expected.digest());
+            EXPECT_EQ(found.contact_digest(), expected.contact_digest());
+            EXPECT_EQ(session->origin(), origin);
+            EXPECT_EQ(found.download_contacts().front().point[0],
+                      expected.download_contacts().front().point[0] + origin.x());
+        };
+        expect(away, 0, far_offset);
+        expect(away, 1, far_offset);
+        session->run(input(near.frame(0), near.frame(1), *session));
+        EXPECT_EQ(session->origin(), far_offset) << "a later frame decides nothing";
+        session->reset();
+        expect(near, 0, Vector::Zero());
+        session->reset();
+        expect(away, 1, far_offset);
+    }
+}
+
+TEST_P(OriginSessions, AFrameThatIsRefusedDecidesNothing) {
+    const auto near = crowd_at(Vector::Zero()), away = crowd_at(far_offset), bare = without_frames(near);
+    const auto session = prepare(bare, {});
+    auto bad = away.frame(0);
+    bad.poses[2].translation.x() = 1e37;
+    EXPECT_THROW(session->run(bad), InputError);
+    EXPECT_EQ(session->run(near.frame(0)).contact_digest(),
+              prepare(near, {})->run(near.frame(0)).contact_digest());
+    EXPECT_EQ(session->origin(), Vector::Zero());
+}
+
+/// So that cells and records of near scenes are those of origin=world.
+TEST_P(OriginSessions, SettingsNameTheWorldWhereItIsTheOrigin) {
+    const auto near = crowd_at(Vector::Zero()), away = crowd_at(far_offset), bare = without_frames(away);
+    EXPECT_EQ(prepare(near, {})->settings().text("origin"), "world");
+    EXPECT_EQ(prepare(away, {})->settings().text("origin"), "auto");
+    EXPECT_EQ(prepare(bare, {})->settings().text("origin"), "auto") << "the first frame decides";
+    const SettingTexts exact{{"placement", "exact"}};
+    EXPECT_EQ(prepare(away, exact)->settings().text("origin"), "auto");
+    if (!device(GetParam()).info().has_double) return;
+    const auto session = prepare(away, {{"placement", "exact"}, {"precision", "double"}});
+    EXPECT_EQ(session->settings().text("origin"), "world") << "its bounds cover no difference";
+    EXPECT_EQ(session->origin(), Vector::Zero());
+    for (const auto* traversal : algorithms())
+        for (const auto& one : traversal->presets())
+            EXPECT_EQ(traversal->settings({}, one.name).text("origin"),
+                      one.name.starts_with("published") ? "world" : "auto")
+                << traversal->name() << " " << one.name;
 }
 
 INSTANTIATE_TEST_SUITE_P(Devices, OriginSessions, testing::ValuesIn(device_names()),

@@ -63,10 +63,6 @@ TEST(Settings, UnknownNamesSuggestTheNearest) {
                         geometry_of(with({{"placement", "exact"}, {"rounding", rounding}}));
                     }),
                     HasSubstr("goes with rounding=safe or directed"));
-    EXPECT_THAT(message_of([] {
-                    geometry_of(with({{"origin", "auto"}, {"placement", "exact"}, {"precision", "double"}}));
-                }),
-                HasSubstr("leave one of the three out"));
 }
 
 TEST(Settings, DecisionsWithCertaintyNeedDouble) {
