@@ -84,11 +84,43 @@ class Accuracy(Case):
         self.assertIsNone(default["error"]["truth"])  # the default truth is of all pairs
         self.assertGreater(pairs["preparation"]["device_bytes"], contacts["preparation"]["device_bytes"])
 
+    def test_what_rounding_changed_is_counted(self):
+        """Bodies far from the world's origin by their poses, in float."""
+        far = ("--pose", f"{6.4e6 + 0.1} {-1.9e6} 0.3 0.9 0.1 0.3 0.2", "--pose", f"{6.4e6 + 0.7} {-1.9e6} 0.4 0.7 0.4 0.6 0.2")
+        words = "truth: 0 of {} meeting pairs missed, {} candidates do not meet; rounding of vertices lost {} of {} pairs that meet by the input, and added {}"
+        found = {}
+        for name, poses, *settings in (("near", ()), ("far", far), ("world", far, "origin=world"), ("exact", far, "origin=world", "placement=exact"),
+                                       ("double", far, "origin=world", "precision=double")):
+            records, text = self.run_two(f"rounding-{name}", "--algorithm", "tiled", "--truth", "contacts", *poses, *(word for one in settings for word in ("--set", one)))
+            truth, rounding = records[0]["error"]["truth"], records[0]["error"]["rounding"]
+            meeting = truth["touching"] + truth["overlapping"]
+            self.assertEqual(truth["missed_touching"] + truth["missed_overlapping"], 0)
+            self.assertIn(words.format(meeting, truth["false"], rounding["lost"], rounding["meeting"], rounding["extra"]), text)
+            self.assertEqual(meeting - rounding["extra"], rounding["meeting"] - rounding["lost"])
+            found[name] = rounding
+        near, world, exact = (found[name] for name in ("near", "world", "exact"))
+        self.assertEqual((near["lost"], near["extra"], near["missed"], near["depth_change"]), (0, 0, 0, 0))
+        self.assertGreater(min(world["lost"], world["extra"], world["depth_change"]), 0)
+        self.assertLessEqual(world["missed"], world["lost"])
+        self.assertEqual((exact["lost"], exact["extra"], exact["missed"]), (0, 0, 0))
+        self.assertEqual(exact["meeting"], world["meeting"])
+        self.assertGreater(exact["depth_change"], 0)
+        for name in ("far", "double"):
+            self.assertLess(found[name]["depth_change"], 1e-6 * world["depth_change"] if name == "double" else 1e-4 * world["depth_change"])
+        _, text = self.run_two("rounding-check", *far, "--set", "origin=world", "--preset", "resident", "--algorithm", "tiled", command="check")
+        self.assertIn(f"1 cell: rounding of vertices lost {world['lost']} of {world['meeting']} pairs that meet by the input, and added {world['extra']}", text)
+        out = self.work / "rounding-motion.jsonl"
+        status, text, _ = tandem("run", "pile:bodies=2,mesh=grain1,frames=2", "--frames", 0, "--device", "host", "--algorithm", "tiled", "--set", "motion=linear",
+                                 "--set", "contact_rule=none", "--repeat", 1, "--quiet", "--out", out)
+        self.assertEqual(status, 0, text)
+        self.assertIsNone(self.records(out)[0]["error"]["rounding"])
+        self.assertNotIn("rounding of vertices", text)
+
     def test_check_shows_missed_and_false(self):
         _, text = self.run_two("check", "--algorithm", "chunked", "--preset", "grouped", command="check")
-        head, row = text.splitlines()[-3:-1]
-        self.assertEqual(head.split()[-2:], ["missed", "false"])
-        self.assertEqual(row.split()[-2], "0")
+        head, row = text.splitlines()[-4:-2]
+        self.assertEqual(head.split()[-3:], ["missed", "false", "lost"])
+        self.assertEqual((row.split()[-3], row.split()[-1]), ("0", "0"))
 
     def test_accuracy_sweeps_bounds_and_contacts_over_scenes(self):
         out = self.work / "sweep.jsonl"

@@ -137,7 +137,7 @@ class Answers(Case):
         fast = ("--device", "host", "--quiet", "--preset", "grouped,resident,fair", *(() if LONG else sets(SMALL)))
         status, out, errors = tandem("check", "hard:corner-cancellation", "--set", "k=8", "--set", "rounding=nearest,safe", *fast)
         self.assertEqual((status, errors), (0, []), out)
-        missed = [int(line.split()[-2]) for line in out.splitlines() if line.startswith("host ")]
+        missed = [int(line.split()[-3]) for line in out.splitlines() if line.startswith("host ")]
         nearest, safe = missed[::2], missed[1::2]
         algorithms = own_algorithms()
         self.assertEqual((len(missed), set(safe)), (2 * len(algorithms), {0}), out)
@@ -148,7 +148,7 @@ class Answers(Case):
         self.assertEqual(len(rows), 60)
         refusal = "tetrahedra 2 not finite in 1 of 2 bodies: body 0 tetrahedron 0, 1 in frame 0; "
         self.assertIn("refused: " + refusal, rows[9])
-        self.assertEqual(rows[10].split(), ["hard:not-finite", "1", "0", "0", "0", "0", str(len(algorithms)), "0", "skipped:", "2"])
+        self.assertEqual(rows[10].split(), ["hard:not-finite", "1", "0", "0", "0", "0", "0", str(len(algorithms)), "0", "skipped:", "2"])
         self.assertIn("rounding=safe misses no pair that touches or overlaps", out)
         self.bad("unknown family of hard cases 'tuch'; the nearest is 'touch'", "check", "hard:tuch")
         self.bad("difficulty=10 is impossible; give a number from 1 to 9", "run", "hard:touch:difficulty=10")

@@ -7,6 +7,7 @@
 #include "harness/plans/cell_filter.h"
 #include "harness/plans/inputs.h"
 #include "harness/plans/job.h"
+#include "harness/record/answer.h"
 #include "base/standard_streams.h"
 #include "base/error.h"
 #include "scenes/hard/hard.h"
@@ -14,6 +15,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <map>
 #include <numeric>
 
 namespace tandem {
@@ -42,22 +44,29 @@ int check_cells(const Job& job, const RunOptions& options, RecordFile& file, con
 
 /// One line for each cell: its answer compared with the reference, then with the truth.
 void print_matrix_header() {
-    put("{:<10} {:<12} {:<18} {:>10} {:>9} {:>8} {:>6} {:>9} {:<14} {:>8} {:>10}\n", "device", "algorithm",
-        "preset", "pairs", "missing", "extra", "retry", "contacts", "contacts equal", "missed", "false");
+    put("{:<10} {:<12} {:<18} {:>10} {:>9} {:>8} {:>6} {:>9} {:<14} {:>8} {:>10} {:>8}\n", "device",
+        "algorithm", "preset", "pairs", "missing", "extra", "retry", "contacts", "contacts equal", "missed",
+        "false", "lost");
+}
+
+/// Pairs that meet by the input and that rounding lost.
+std::string lost_text(const Measurement& m) {
+    return m.errors && m.errors->rounding ? fmt::to_string(m.errors->rounding->lost) : "-";
 }
 
 void print_matrix_row(const Cell& cell, const Measurement& m) {
-    put("{:<10} {:<12} {:<18} {:>10} {:>9} {:>8} {:>6} {:>9} {:<14} {:>8} {:>10}\n", name_of(cell.devices),
-        cell.algorithm->name(), cell.preset, m.agreement.digest.count, m.agreement.missing, m.agreement.extra,
-        m.retries, std::accumulate(m.contacts.begin(), m.contacts.end(), std::uint64_t{0}),
+    put("{:<10} {:<12} {:<18} {:>10} {:>9} {:>8} {:>6} {:>9} {:<14} {:>8} {:>10} {:>8}\n",
+        name_of(cell.devices), cell.algorithm->name(), cell.preset, m.agreement.digest.count,
+        m.agreement.missing, m.agreement.extra, m.retries,
+        std::accumulate(m.contacts.begin(), m.contacts.end(), std::uint64_t{0}),
         m.agreement.contact_frames_wrong == 0 ? "yes" : "NO",
         m.errors ? fmt::to_string(m.errors->missed()) : "-",
-        m.errors ? fmt::to_string(m.errors->pairs.disjoint) : "-");
+        m.errors ? fmt::to_string(m.errors->pairs.disjoint) : "-", lost_text(m));
 }
 
 void print_family_header() {
-    put("{:<26} {:>6} {:>9} {:>11} {:>12} {:>13} {:>6} {:>6}\n", "family", "frames", "touching",
-        "overlapping", "missed: safe", "missed: other", "cells", "wrong");
+    put("{:<26} {:>6} {:>9} {:>11} {:>12} {:>13} {:>6} {:>6} {:>6}\n", "family", "frames", "touching",
+        "overlapping", "missed: safe", "missed: other", "lost", "cells", "wrong");
 }
 
 /// Checks one family of hard:all and prints one line. Pairs that cells miss are counted apart for
@@ -66,6 +75,7 @@ int check_family(const Job& job, const RunOptions& options, RecordFile& file, co
     std::uint64_t wrong = 0;
     std::uint64_t missed_safe = 0;
     std::uint64_t missed_other = 0;
+    std::uint64_t lost = 0; // the most of a cell
     PairErrors errors;
     const int code = check_cells(job, options, file, progress, [&](const Cell&, const Measurement& m) {
         wrong += m.agreement.ok() ? 0 : 1;
@@ -73,12 +83,13 @@ int check_family(const Job& job, const RunOptions& options, RecordFile& file, co
         errors = m.errors->pairs;
         (m.settings[parameters::rounding] == Rounding::safe ? missed_safe : missed_other) +=
             m.errors->missed();
+        if (m.errors->rounding) lost = std::max(lost, m.errors->rounding->lost);
     });
     if (Interrupt::asked()) return code;
     const auto& flaws = job.range.flaws();
-    put("{:<26} {:>6} {:>9} {:>11} {:>12} {:>13} {:>6} {:>6}{}\n", job.scene.name, job.range.size(),
+    put("{:<26} {:>6} {:>9} {:>11} {:>12} {:>13} {:>6} {:>6} {:>6}{}\n", job.scene.name, job.range.size(),
         errors.touching + errors.missed_touching, errors.overlapping + errors.missed_overlapping, missed_safe,
-        missed_other, job.cells.size(), wrong,
+        missed_other, lost, job.cells.size(), wrong,
         flaws.any() && flaws.handling == Degenerate::skip
             ? fmt::format("  skipped: {}", flaws.degenerate + flaws.non_finite)
             : "");
@@ -190,13 +201,16 @@ int check_command(const RunOptions& options) {
     print_scene(job);
     const Progress progress(options.quiet);
     std::size_t broken = 0;
+    std::map<std::string, std::size_t> roundings; // cells by what rounding changed
     print_matrix_header();
     const int code = check_cells(job, options, file, progress, [&](const Cell& cell, const Measurement& m) {
         print_matrix_row(cell, m);
         broken += misses_against_its_promise(m) ? 1 : 0;
+        if (m.errors && m.errors->rounding) ++roundings[rounding_text(*m.errors->rounding)];
     });
     if (file.failed() || Interrupt::asked()) return code;
     put("{}\n", code == 0 ? "all agree with the reference" : "NOT all agree with the reference");
+    for (const auto& [text, cells] : roundings) put("{} cell{}: {}\n", cells, cells == 1 ? "" : "s", text);
     if (broken > 0) put("{} cells with safe rounding MISS pairs that touch or overlap\n", broken);
     return code;
 }

@@ -13,11 +13,16 @@ namespace tandem {
 namespace {
 
 std::string truth_of(const AnswerErrors& e) {
-    return fmt::format("truth: {} of {} meeting pairs missed, {} candidates do not meet", e.missed(),
-                       e.meeting(), e.pairs.disjoint);
+    return fmt::format("truth: {} of {} meeting pairs missed, {} candidates do not meet{}", e.missed(),
+                       e.meeting(), e.pairs.disjoint, e.rounding ? "; " + rounding_text(*e.rounding) : "");
 }
 
 } // namespace
+
+std::string rounding_text(const RoundingErrors& errors) {
+    return fmt::format("rounding of vertices lost {} of {} pairs that meet by the input, and added {}",
+                       errors.lost, errors.meeting, errors.extra);
+}
 
 std::string answer_text(const Measurement& m) {
     const auto& a = m.agreement;

@@ -8,6 +8,9 @@ namespace tandem {
 /// The last printed line of a cell: right, or the number of wrong answers.
 std::string answer_text(const Measurement& m);
 
+/// What the rounding of vertices changed, against the input's doubles.
+std::string rounding_text(const RoundingErrors& errors);
+
 /// Reasons to doubt a cell's times, such as disturbed rounds or drift; empty when there are none.
 std::string doubts(const CellResult& result);
 

@@ -180,6 +180,34 @@ const Fields<Flaws>& input_fields() {
     return fields;
 }
 
+const Fields<RoundingErrors>& rounding_fields() {
+    static const Fields<RoundingErrors> fields{
+        {"meeting", count(), "pairs that meet by the input", &RoundingErrors::meeting},
+        {"lost",
+         count(),
+         "of these, pairs that do not meet by the vertices that setting placement names: rounding lost them, "
+         "whatever the answer; 0 with placement=exact",
+         &RoundingErrors::lost,
+         {.column = "rounding_lost"}},
+        {"extra",
+         count(),
+         "pairs that meet by those vertices and not by the input",
+         &RoundingErrors::extra,
+         {.column = "rounding_extra"}},
+        {"missed", count(), "pairs that meet by the input and are no candidates of the answer",
+         &RoundingErrors::missed},
+        {"depth_change",
+         nullable(number_from(0)),
+         "largest difference of a pair's exact depths by the cell's vertices and by the input, in units of "
+         "the "
+         "scene, 0 being the depth of a pair that does not overlap; of as many pairs as "
+         "error.truth.contacts; "
+         "null when contacts were not asked for",
+         &RoundingErrors::depth_change,
+         {.column = "rounding_depth_change"}}};
+    return fields;
+}
+
 const Fields<CellRecord>& one_error() {
     static const Fields<CellRecord> fields{
         {"degenerate_pairs", count(),
@@ -202,6 +230,17 @@ const Fields<CellRecord>& one_error() {
                                       "asked for; records from before it have none")),
          "",
          [](auto& r) { return r.m.errors ? truth_fields().write(*r.m.errors) : Json(); },
+         {.optional = true}},
+        {"rounding",
+         nullable(rounding_fields().type(
+             "against the input: the scene's vertices in double, moved by the poses without rounding, every "
+             "pair of every frame decided. What the rounding of vertices to the cell's changed; null without "
+             "a truth, and with motion=linear; records from before it have none")),
+         "",
+         [](auto& r) {
+             return r.m.errors && r.m.errors->rounding ? rounding_fields().write(*r.m.errors->rounding)
+                                                       : Json();
+         },
          {.optional = true}}};
     return fields;
 }

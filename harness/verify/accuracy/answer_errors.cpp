@@ -142,6 +142,10 @@ void AnswerErrors::add(const AnswerErrors& other) {
             for (unsigned column = 0; column < 3; ++column)
                 (*decisions)[row][column] += (*other.decisions)[row][column];
     }
+    if (other.rounding) {
+        if (!rounding) rounding.emplace();
+        rounding->add(*other.rounding);
+    }
     if (other.contacts) {
         if (!contacts) contacts.emplace();
         contacts->add(*other.contacts);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "geometry/contact_truth.h"
+#include "harness/verify/accuracy/rounding.h"
 #include "harness/verify/oracle/drift.h"
 #include "harness/verify/oracle/frame_truth.h"
 
@@ -47,6 +48,7 @@ struct AnswerErrors {
     std::optional<ContactErrors> contacts;   ///< empty when not requested
     std::optional<Drift> drift;              ///< of the first frame; empty when contacts are not requested
     bool every_contact = true;               ///< whether `contacts` covers all overlapping pairs
+    std::optional<RoundingErrors> rounding;  ///< empty with motion=linear
 
     std::uint64_t missed() const { return pairs.missed_touching + pairs.missed_overlapping; }
     std::uint64_t meeting() const { return pairs.touching + pairs.overlapping + missed(); }

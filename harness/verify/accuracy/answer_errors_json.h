@@ -13,7 +13,8 @@ TANDEM_FIELDS(DecisionCounts, relations, tiers)
 TANDEM_FIELDS(Drift, vertices, median, p99, max, of_bound)
 TANDEM_FIELDS(ContactErrors, overlapping, unanswered, not_finite, depth_relative, depth_ulps, normal_degrees,
               point, hausdorff, volume_relative, no_volume)
+TANDEM_FIELDS(RoundingErrors, meeting, lost, extra, missed, depth_change)
 TANDEM_FIELDS(AnswerErrors, frames, pairs, decided, invalid_tetrahedra, decisions, contacts, drift,
-              every_contact)
+              every_contact, rounding)
 
 } // namespace tandem

@@ -121,18 +121,18 @@ std::string p99(const std::vector<double>& samples) {
 }
 
 void print_header() {
-    put("{:>9} {:>9} {:>10} {:>10} {:>9} {:>10} {:>9} {:>9} {:>9}  cell\n", "ms/frame", "missed", "false",
-        "ratio", "no answer", "depth/uL", "degrees", "point/L", "volume");
+    put("{:>9} {:>9} {:>9} {:>10} {:>10} {:>9} {:>10} {:>9} {:>9} {:>9}  cell\n", "ms/frame", "missed",
+        "lost", "false", "ratio", "no answer", "depth/uL", "degrees", "point/L", "volume");
 }
 
 /// Errors of contacts are 99th percentiles.
 void print_row(const Cell& cell, const Measurement& m) {
     const auto& e = *m.errors;
     const auto contacts = e.contacts.value_or(ContactErrors{});
-    put("{:>9.3g} {:>9} {:>10} {:>10} {:>9} {:>10} {:>9} {:>9} {:>9}  {}{}\n", frame_ms(m), e.missed(),
-        e.pairs.disjoint, number(e.candidate_ratio()), contacts.unanswered, p99(contacts.depth_ulps),
-        p99(contacts.normal_degrees), p99(contacts.point), p99(contacts.volume_relative), describe(cell),
-        e.missed() > 0 ? "  MISSES" : "");
+    put("{:>9.3g} {:>9} {:>9} {:>10} {:>10} {:>9} {:>10} {:>9} {:>9} {:>9}  {}{}\n", frame_ms(m), e.missed(),
+        e.rounding ? fmt::to_string(e.rounding->lost) : "-", e.pairs.disjoint, number(e.candidate_ratio()),
+        contacts.unanswered, p99(contacts.depth_ulps), p99(contacts.normal_degrees), p99(contacts.point),
+        p99(contacts.volume_relative), describe(cell), e.missed() > 0 ? "  MISSES" : "");
 }
 
 /// Measures all cells on one scene, until a record cannot be written or an interrupt. Returns the exit code.
@@ -207,8 +207,9 @@ int accuracy_command(const AccuracyOptions& options) {
         code = std::max(code, measure_scene(own, cells, file, --scenes_after));
         if (file.failed() || Interrupt::asked()) return code;
     }
-    put("ms/frame: the whole frame; ratio: candidates per intersecting pair; errors of contacts are 99th "
-        "percentiles;\n"
+    put("ms/frame: the whole frame; lost: by the rounding of vertices, of pairs that intersect by the "
+        "input;\n"
+        "ratio: candidates per intersecting pair; errors of contacts are 99th percentiles;\n"
         "u: half a unit in the last place of 1; L: the longest edge; volume: relative error of the volume of "
         "the contact\n"
         "points' hull; MISSES: intersecting pairs are missing from the candidates\n");

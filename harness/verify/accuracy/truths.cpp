@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "harness/verify/accuracy/truths.h"
 
-#include "algorithms/bodies/origin.h"
 #include "harness/verify/accuracy/answer_errors_json.h"
 #include "harness/verify/reference.h"
 #include "scenes/digest.h"
@@ -16,9 +15,12 @@ namespace tandem {
 
 namespace {
 
-/// Throws early when the truth of all frames will not fit in memory, assuming that they are like the first.
-void check_capacity(const FrameTruth& first, std::size_t frames) {
-    const auto bytes = (first.touching.size() + first.overlapping.size()) * sizeof(Pair) * (frames - 1);
+std::size_t pairs_in(const FrameTruth& truth) { return truth.touching.size() + truth.overlapping.size(); }
+
+/// Throws early when the truth of all frames will not fit in memory, assuming that they are like the first,
+/// with `pairs` pairs.
+void check_capacity(std::size_t pairs, std::size_t frames) {
+    const auto bytes = pairs * sizeof(Pair) * (frames - 1);
     const auto memory = free_memory();
     constexpr double gib = 1 << 30;
     if (bytes > memory)
@@ -44,7 +46,7 @@ const FrameTruth& Truths::truth_of(const FramePosition& position, const Report& 
     const auto& [positions, index] = position;
     const auto frame = range_.frame(index, positions.origin);
     auto truth = frame_truth(scene_, *frame, positions, report, free_memory());
-    if (index == 0) check_capacity(truth, range_.size());
+    if (index == 0) check_capacity(pairs_in(truth), range_.size());
     return truths_.emplace(position, std::move(truth)).first->second;
 }
 
@@ -81,6 +83,50 @@ const FrameTruth& Truths::walked_truth_of(const FramePosition& position, Walked 
     return boundary_truths_.emplace(position, std::move(part)).first->second;
 }
 
+RoundedFrame Truths::rounded_frame(const FramePosition& cell) const {
+    const auto& [positions, index] = cell;
+    return {scene_, range_.frame(index), range_.frame(index, positions.origin),
+            range_.origin(positions.origin), positions.precision};
+}
+
+/// The truth by the input is that by the cell's vertices where these are the input's.
+Truths::FramePosition Truths::input_of(const FramePosition& cell) {
+    auto found = rounds_.find(cell);
+    if (found == rounds_.end()) found = rounds_.emplace(cell, rounds(rounded_frame(cell))).first;
+    const auto& [positions, index] = cell;
+    return found->second
+               ? FramePosition{{positions.precision, Placement::exact, Origin::world, positions.self}, index}
+               : cell;
+}
+
+/// The same for all answers to a frame: `missed` stays 0. `position`: of the pairs that `cell` must not miss.
+const RoundingErrors& Truths::rounding_of(const FramePosition& cell, const FramePosition& position,
+                                          Walked walked, const Report& report) {
+    const std::tuple key{cell, position, walked};
+    if (const auto found = roundings_.find(key); found != roundings_.end()) return found->second;
+    const auto input_position = input_of(cell);
+    const auto& own = walked_truth_of(position, walked, report);
+    const auto& input = walked_truth_of(input_position, walked, report);
+    if (cell.second == 0 && &input != &own) check_capacity(pairs_in(own) + pairs_in(input), range_.size());
+    auto errors = rounding_errors(own, input);
+    if (amount_ == TruthAmount::contacts)
+        errors.depth_change =
+            input_position == cell ? 0 : depth_change(rounded_frame(cell), own, input, most_contacts_);
+    return roundings_.emplace(key, errors).first->second;
+}
+
+/// The answer's errors by the input.
+RoundingErrors Truths::input_errors(const Geometry& geometry, const FramePosition& position,
+                                    const FrameAnswer& answer, std::span<const Pair> pairs,
+                                    const Report& report) {
+    const FramePosition cell{{geometry.precision, Placement::rounded, geometry.origin, answer.self},
+                             position.second};
+    auto errors = rounding_of(cell, position, answer.walked, report);
+    const auto found = pair_errors(walked_truth_of(input_of(cell), answer.walked, report), pairs);
+    errors.missed = found.missed_touching + found.missed_overlapping;
+    return errors;
+}
+
 const ContactTruths& Truths::contact_truths_of(const FramePosition& position, Walked walked,
                                                const FrameTruth& truth) {
     const std::pair key{position, walked};
@@ -88,7 +134,7 @@ const ContactTruths& Truths::contact_truths_of(const FramePosition& position, Wa
     const auto& [positions, index] = position;
     const auto frame = range_.frame(index, positions.origin);
     auto truths =
-        contact_truths(scene_, *frame, positions, truth, most_contacts_, origin_of(scene_, positions.origin));
+        contact_truths(scene_, *frame, positions, truth, most_contacts_, range_.origin(positions.origin));
     return contact_truths_.emplace(key, std::move(truths)).first->second;
 }
 
@@ -152,7 +198,10 @@ AnswerErrors Truths::errors_of(const Geometry& geometry, const FramePosition& po
         if (!answer.makes_contacts) return errors;
     }
     const auto& truth = walked_truth_of(position, answer.walked, report);
-    if (geometry.motion == Motion::none) errors.pairs = pair_errors(truth, pairs);
+    if (geometry.motion == Motion::none) {
+        errors.pairs = pair_errors(truth, pairs);
+        errors.rounding = input_errors(geometry, position, answer, pairs, report);
+    }
     errors.decided = truth.decisions;
     errors.invalid_tetrahedra = truth.invalid.size();
     if (amount_ == TruthAmount::contacts && position.second == 0) errors.drift = drift_of(geometry);

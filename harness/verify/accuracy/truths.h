@@ -33,7 +33,9 @@ struct FrameAnswer {
 
 /// The truth of a scene's frames, computed once for all cells with the same positions, and the errors of
 /// answers, computed once for each distinct answer. The cell's setting `placement` selects the truth. With
-/// placement=exact, errors of contacts include the rounding of vertices.
+/// placement=exact, errors of contacts include the rounding of vertices. With placement=rounded, a second
+/// truth by the input tells what rounding changed, unless the cell rounds no vertex of the frame: it takes
+/// the memory of the first, and more time where tetrahedra touch, because rationals decide these.
 class Truths {
 public:
     /// `scene` and `range` must outlive this object. Exact contacts are computed for at most `most_contacts`
@@ -59,6 +61,12 @@ private:
     PairErrors motion_errors(const FramePosition& position, const FrameAnswer& answer,
                              std::vector<Pair> pairs, const Report& report);
     const FrameTruth& walked_truth_of(const FramePosition& position, Walked walked, const Report& report);
+    RoundedFrame rounded_frame(const FramePosition& cell) const;
+    FramePosition input_of(const FramePosition& cell);
+    const RoundingErrors& rounding_of(const FramePosition& cell, const FramePosition& position, Walked walked,
+                                      const Report& report);
+    RoundingErrors input_errors(const Geometry& geometry, const FramePosition& position,
+                                const FrameAnswer& answer, std::span<const Pair> pairs, const Report& report);
     const ContactTruths& contact_truths_of(const FramePosition& position, Walked walked,
                                            const FrameTruth& truth);
     std::string cache_key(const Geometry& geometry, const FramePosition& position,
@@ -75,6 +83,8 @@ private:
     std::map<FramePosition, FrameTruth> truths_;
     std::map<FramePosition, MotionTruth> motion_truths_;  ///< from each frame to the next
     std::map<FramePosition, FrameTruth> boundary_truths_; ///< of Walked::boundary
+    std::map<FramePosition, bool> rounds_;                ///< by cell: some vertex is not the input's
+    std::map<std::tuple<FramePosition, FramePosition, Walked>, RoundingErrors> roundings_;
     std::map<std::pair<FramePosition, Walked>, ContactTruths> contact_truths_;
     std::map<std::pair<Precision, Origin>, Drift> drifts_; ///< of the first frame
     std::map<std::tuple<Precision, Origin, Motion, FramePosition, Walked, Numbers>, AnswerErrors> errors_;
