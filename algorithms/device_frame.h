@@ -20,8 +20,8 @@ struct DeviceRows {
 /// A frame in the memory of the session's device. Commands that write it must come before run() in the order
 /// of the device's queue (Device::queue, Device::follow). run() has read it when it returns.
 struct DeviceFrame {
-    /// One row per body, tx ty tz qw qx qy qz: x_world = R(q) x_mesh + t. q is normalised; its squared norm
-    /// must be between 1e-300 and 1e300. Rows of deformable bodies are not read. Empty: all bodies at the
+    /// One row per body, tx ty tz qw qx qy qz: x_world = R(q) x_mesh + t. q is normalised; it must be
+    /// finite and not 0. Rows of deformable bodies are not read. Empty: all bodies at the
     /// identity.
     DeviceRows poses;
     /// One entry per body. Deformable bodies: x y z of each vertex in world coordinates, in the order of the
@@ -30,8 +30,8 @@ struct DeviceFrame {
     std::vector<std::vector<std::uint32_t>> skipped{}; ///< see Frame::skipped; in the host's memory
 };
 
-/// The pose of a row tx ty tz qw qx qy qz, with normalised quaternion. The order of operations is that of
-/// pack_frame.cl. Throws InputError that names row `body` if it is not finite or has no rotation.
+/// The pose of a row tx ty tz qw qx qy qz, with normalised quaternion (base/quaternion.h). Throws InputError
+/// that names row `body` if it is not finite or has no rotation.
 Pose pose_of_row(const double* row, std::size_t body);
 
 } // namespace tandem

@@ -3,8 +3,6 @@
 
 #include "base/random.h"
 
-#include <cmath>
-
 namespace tandem {
 
 Eigen::Quaterniond product(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
@@ -12,11 +10,6 @@ Eigen::Quaterniond product(const Eigen::Quaterniond& a, const Eigen::Quaterniond
             ((a.w() * b.x() + a.x() * b.w()) + a.y() * b.z()) - a.z() * b.y(),
             ((a.w() * b.y() - a.x() * b.z()) + a.y() * b.w()) + a.z() * b.x(),
             ((a.w() * b.z() + a.x() * b.y()) - a.y() * b.x()) + a.z() * b.w()};
-}
-
-Eigen::Quaterniond unit(const Eigen::Quaterniond& q) {
-    const double length = std::sqrt((q.w() * q.w() + q.x() * q.x()) + (q.y() * q.y() + q.z() * q.z()));
-    return {q.w() / length, q.x() / length, q.y() / length, q.z() / length};
 }
 
 Eigen::Vector3d rotated(const Eigen::Quaterniond& q, const Eigen::Vector3d& v) {

@@ -45,6 +45,22 @@ class Frames(ColliderCase):
         dumped = self.dumps(scene, "--frames", 1, "--algorithm", "tiled", "--device", "host", *sets(self.small("tiled")))
         self.expect_answer(self.collider(self.meshes[:1], bodies=[0, 0]).run(turned[1]), dumped)
 
+    def test_rotations_of_any_length(self):
+        """The same numbers give the same answer in Python, as a scene file, as --pose and, scaled by a power of two, at any size."""
+        numbers = numpy.array([0.07765293774064505, -0.027510828999840038, -0.4278700823561289, -0.2928281956712715])
+        plain = None
+        for power in (0, 700, -1000):
+            rows = [[0, 0, 0, *(numbers * 2.0**power)], [0.125, 0, 0.0625, *(numbers * 2.0**-power)]]
+            scene = tandem.write_frames(self.work / f"turned{power}", self.meshes, poses=[rows])
+            common = ("--algorithm", "tiled", "--device", "host", *sets({**self.small("tiled"), "precision": "double"}))
+            dumped = self.dumps(scene, *common)
+            posed = self.dumps(*(word for file, row in zip(self.files, rows) for word in ("--mesh", file, "--pose", " ".join(map(repr, map(float, row))))), *common)
+            answer = self.collider(precision="double").run(rows)
+            self.expect_answer(answer, dumped)
+            self.expect_answer(answer, posed)
+            plain = plain or answer
+            self.assertEqual((answer.digest(), answer.contact_digest()), (plain.digest(), plain.contact_digest()))
+
     def test_bad_frames_write_nothing(self):
         poses, vertices = self.motion()
         bad = [[vertices[0][0][1:]], *vertices[1:]]

@@ -3,8 +3,8 @@
 
 #include "algorithms/bodies/range.h"
 #include "base/error.h"
+#include "base/quaternion.h"
 
-#include <cmath>
 #include <fmt/format.h>
 
 namespace tandem {
@@ -37,20 +37,16 @@ void check_capacity(const DeviceRows& rows, std::size_t numbers, const std::stri
 
 } // namespace
 
-/// The bounds on the squared norm exclude overflow and 0 / 0, as for --pose. The sum has the order of Eigen's
-/// normalized() for vectors of two doubles, so that --pose gives the same bits.
 Pose pose_of_row(const double* row, std::size_t body) {
-    const double w = row[3], x = row[4], y = row[5], z = row[6];
-    const double norm = (x * x + z * z) + (y * y + w * w);
-    if (!(norm > 1e-300 && norm < 1e300))
+    const auto rotation = given_rotation(row[3], row[4], row[5], row[6]);
+    if (!rotation)
         throw InputError(fmt::format("poses: row {} has no rotation; give tx ty tz qw qx qy qz with a "
                                      "quaternion that is finite and not 0",
                                      body));
     const Eigen::Vector3d translation(row[0], row[1], row[2]);
     if (!translation.allFinite())
         throw InputError(fmt::format("poses: row {} is not finite; give tx ty tz qw qx qy qz", body));
-    const double length = std::sqrt(norm);
-    return {Eigen::Quaterniond(w / length, x / length, y / length, z / length), translation};
+    return {*rotation, translation};
 }
 
 void check_fits(const Scene& scene, const DeviceFrame& frame) {

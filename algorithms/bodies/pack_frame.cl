@@ -16,8 +16,12 @@
 #define ROWS_NONE 2u
 
 #define POSE_NUMBERS 7
-#define LEAST_NORM 1e-300 // squared norm of a quaternion: the bounds exclude overflow and 0 / 0
-#define LARGEST_NORM 1e300
+#define LARGEST_NUMBER 1.7976931348623157e308
+// As in base/quaternion.cpp: the powers of two 498, -498, 600 and -600.
+#define LARGE_QUATERNION 8.183476519740355e+149
+#define SMALL_QUATERNION 1.221974545399842e-150
+#define SCALE_UP 4.149515568880993e+180
+#define SCALE_DOWN 2.409919865102884e-181
 
 DEVICE double number_at(GLOBAL const void* rows, uint kind, ulong i) {
     return kind == ROWS_DOUBLE ? ((GLOBAL const double*)rows)[i] : (double)((GLOBAL const float*)rows)[i];
@@ -72,27 +76,44 @@ DEVICE void write_pose(GLOBAL RealRow* poses, const double* rows) {
         poses[i] = row_of(rows[4 * i], rows[4 * i + 1], rows[4 * i + 2], rows[4 * i + 3]);
 }
 
-// Loads a row tx ty tz qw qx qy qz. Bodies with vertices in world coordinates get the identity. Returns the
-// squared norm of the quaternion.
-DEVICE double load_pose(GLOBAL const void* rows, uint kind, GLOBAL const uint* bodies, ulong body,
-                        double* numbers) {
+// Loads a row tx ty tz qw qx qy qz. Bodies with vertices in world coordinates get the identity.
+DEVICE void load_pose(GLOBAL const void* rows, uint kind, GLOBAL const uint* bodies, ulong body,
+                      double* numbers) {
     const int in_world = (bodies[body * BODY_WORDS + BODY_FLAGS] & BODY_IN_WORLD) != 0u;
     for (uint i = 0; i < POSE_NUMBERS; ++i)
         numbers[i] = in_world || kind == ROWS_NONE ? (i == 3u ? 1 : 0)
                                                    : number_at(rows, kind, body * POSE_NUMBERS + i);
-    return (numbers[4] * numbers[4] + numbers[6] * numbers[6])
-           + (numbers[5] * numbers[5] + numbers[3] * numbers[3]);
+}
+
+DEVICE double largest_of(const double* q) {
+    double largest = 0;
+    for (uint i = 0; i < 4u; ++i) largest = ABSOLUTE(q[i]) > largest ? ABSOLUTE(q[i]) : largest;
+    return largest;
+}
+
+// As unit() of base/quaternion.cpp, before the division.
+DEVICE double scaled_length(double* q) {
+    const double largest = largest_of(q);
+    const double scale = largest > LARGE_QUATERNION ? SCALE_DOWN : largest < SMALL_QUATERNION ? SCALE_UP : 1;
+    for (uint i = 0; i < 4u; ++i) q[i] *= scale;
+    return SQUARE_ROOT((q[0] * q[0] + q[1] * q[1]) + (q[2] * q[2] + q[3] * q[3]));
 }
 
 // Normalises as pose_of_row and again as pose_rows, because the second time changes bits that affect answers.
-DEVICE void unit_quaternion(const double* numbers, double norm, double* q) {
-    const double first = SQUARE_ROOT(norm);
-    for (uint i = 0; i < 4u; ++i) q[i] = numbers[3 + i] / first;
-    const double second = SQUARE_ROOT((q[0] * q[0] + q[1] * q[1]) + (q[2] * q[2] + q[3] * q[3]));
-    for (uint i = 0; i < 4u; ++i) q[i] = q[i] / second;
+DEVICE void unit_quaternion(const double* numbers, double* q) {
+    for (uint i = 0; i < 4u; ++i) q[i] = numbers[3 + i];
+    for (uint time = 0; time < 2u; ++time) {
+        const double length = scaled_length(q);
+        for (uint i = 0; i < 4u; ++i) q[i] /= length;
+    }
 }
 
-DEVICE int is_rotation(double norm) { return norm > LEAST_NORM && norm < LARGEST_NORM; }
+// Whether the quaternion of a row is finite and not 0.
+DEVICE int is_rotation(const double* numbers) {
+    int is_finite = 1;
+    for (uint i = 3; i < POSE_NUMBERS; ++i) is_finite = is_finite && ABSOLUTE(numbers[i]) <= LARGEST_NUMBER;
+    return is_finite && largest_of(numbers + 3) > 0;
+}
 
 // A work-item packs one body. `shifts`: three numbers a body; not read unless `has_shifts`.
 KERNEL void pack_poses(GLOBAL real* poses, GLOBAL const void* rows, uint kind, GLOBAL const uint* bodies,
@@ -101,11 +122,10 @@ KERNEL void pack_poses(GLOBAL real* poses, GLOBAL const void* rows, uint kind, G
     for (ulong body = GLOBAL_ID; body < count; body += GLOBAL_COUNT) {
         const int in_world = (bodies[body * BODY_WORDS + BODY_FLAGS] & BODY_IN_WORLD) != 0u;
         double numbers[POSE_NUMBERS];
-        double norm = load_pose(rows, kind, bodies, body, numbers);
-        if (!(in_range(numbers, limit) && is_rotation(norm))) {
+        load_pose(rows, kind, bodies, body, numbers);
+        if (!(in_range(numbers, limit) && is_rotation(numbers))) {
             counter_add(status + STATUS_FLAWED, 1u);
             for (uint i = 0; i < POSE_NUMBERS; ++i) numbers[i] = i == 3u ? 1 : 0;
-            norm = 1;
         }
         if (!in_world) {
             numbers[0] -= origin_x;
@@ -113,7 +133,7 @@ KERNEL void pack_poses(GLOBAL real* poses, GLOBAL const void* rows, uint kind, G
             numbers[2] -= origin_z;
         }
         double q[4];
-        unit_quaternion(numbers, norm, q);
+        unit_quaternion(numbers, q);
         double pose[12];
         pose_rows(q, numbers, pose);
         if (has_shifts != 0u && !in_world) shift_pose(shifts + 3 * body, pose);
@@ -146,14 +166,14 @@ KERNEL void pack_arcs(GLOBAL real* poses, GLOBAL real* next_poses, GLOBAL const 
     for (ulong body = GLOBAL_ID; body < count; body += GLOBAL_COUNT) {
         double numbers[POSE_NUMBERS];
         double next_numbers[POSE_NUMBERS];
-        const double norm = load_pose(rows, kind, bodies, body, numbers);
-        const double next_norm = load_pose(next_rows, next_kind, bodies, body, next_numbers);
+        load_pose(rows, kind, bodies, body, numbers);
+        load_pose(next_rows, next_kind, bodies, body, next_numbers);
         double arc = 0;
-        if (is_rotation(norm) && is_rotation(next_norm)) {
+        if (is_rotation(numbers) && is_rotation(next_numbers)) {
             double p[4];
             double q[4];
-            unit_quaternion(numbers, norm, p);
-            unit_quaternion(next_numbers, next_norm, q);
+            unit_quaternion(numbers, p);
+            unit_quaternion(next_numbers, q);
             arc = arc_between(p, q);
         }
         const RealRow row = row_of(0, 0, 0, arc);

@@ -3,6 +3,7 @@
 
 #include "algorithms/bodies/range.h"
 #include "base/error.h"
+#include "base/quaternion.h"
 #include "base/standard_streams.h"
 
 #include <algorithm>
@@ -18,19 +19,19 @@ namespace tandem {
 
 namespace {
 
-/// Parses "tx ty tz qw qx qy qz". The bounds on the squared norm prevent overflow and 0 / 0 in the
-/// normalization.
+/// Parses "tx ty tz qw qx qy qz".
 Pose parse_pose(const std::string& text) {
     std::istringstream in(text);
     std::array<double, 7> v{};
     for (auto& value : v) in >> value;
     std::string rest;
-    const double norm = v[3] * v[3] + v[4] * v[4] + v[5] * v[5] + v[6] * v[6];
-    if (!in || in >> rest || !(norm > 1e-300 && norm < 1e300))
+    const auto rotation = given_rotation(v[3], v[4], v[5], v[6]);
+    if (!in || in >> rest || !rotation)
         throw InputError(fmt::format(
-            "--pose '{}': give seven numbers \"tx ty tz qw qx qy qz\" with a quaternion that is not 0",
+            "--pose '{}': give seven numbers \"tx ty tz qw qx qy qz\" with a quaternion that is finite "
+            "and not 0",
             text));
-    return {Eigen::Quaterniond(v[3], v[4], v[5], v[6]).normalized(), Eigen::Vector3d(v[0], v[1], v[2])};
+    return {*rotation, Eigen::Vector3d(v[0], v[1], v[2])};
 }
 
 /// Parses one number of `whole`, the text of the option, which the error message quotes.

@@ -69,7 +69,7 @@ def _poses(poses, bodies, rigid):
     for i, rows in enumerate(frames):
         if len(rows) != len(bodies):
             raise ValueError(f"poses[{i}]: {len(rows)} rows for {len(bodies)} bodies; give each body its row")
-        if not (rows[rigid, 3:] ** 2).sum(axis=1).all():
+        if not rows[rigid, 3:].any(axis=1).all():
             raise ValueError(f"poses[{i}]: a row has no rotation; give tx ty tz qw qx qy qz")
     return frames
 

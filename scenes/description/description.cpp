@@ -25,8 +25,9 @@ using namespace description;
 
 /// Normalises the quaternion, since descriptions are written by hand.
 Eigen::Quaterniond quaternion(double w, double x, double y, double z, const JsonLocation& location) {
-    if (!(w * w + x * x + y * y + z * z > 0)) location.fail("must not be the zero quaternion");
-    return unit(Eigen::Quaterniond(w, x, y, z));
+    const auto rotation = given_rotation(w, x, y, z);
+    if (!rotation) location.fail("must not be the zero quaternion");
+    return *rotation;
 }
 
 /// Motion of one body: a start with a velocity and a spin per frame, a list of poses, or vertices from files.
@@ -41,7 +42,11 @@ struct Motion {
     Pose at(std::size_t frame) const {
         if (!poses.empty()) return poses[frame];
         const auto time = static_cast<double>(frame);
-        return {unit(product(turn(axis, spin * time), start.rotation)), start.translation + time * velocity};
+        const double angle = spin * time;
+        // A body that has not turned keeps the bits that it has with poses: each normalisation may change
+        // some.
+        return {angle == 0 ? start.rotation : unit(product(turn(axis, angle), start.rotation)),
+                start.translation + time * velocity};
     }
 };
 
@@ -98,8 +103,10 @@ Motion read_motion(const Json& json, const JsonLocation& location, std::size_t f
     if (json.contains("velocity")) motion.velocity = vector(json["velocity"], location / "velocity");
     if (json.contains("spin")) {
         const auto spin = numbers<4>(json["spin"], location / "spin");
-        const double length = std::sqrt((spin[0] * spin[0] + spin[1] * spin[1]) + spin[2] * spin[2]);
-        if (!(length > 0)) (location / "spin").fail("must have an axis that is not 0");
+        const double square = (spin[0] * spin[0] + spin[1] * spin[1]) + spin[2] * spin[2];
+        if (!(square > 1e-300 && square < 1e300)) // otherwise the square has overflow or too few digits
+            (location / "spin").fail("must have an axis of length 1e-150 to 1e150");
+        const double length = std::sqrt(square);
         motion.axis = {spin[0] / length, spin[1] / length, spin[2] / length};
         motion.spin = spin[3];
         if (!(std::fabs(motion.spin) * static_cast<double>(frames) <= 1e6))

@@ -155,7 +155,7 @@ void Ladder::expect_right(const Scene& scene, const Mode& mode, std::size_t firs
             if (number++ % step == first % step) expect_right(*traversal, preset, scene, mode);
 }
 
-/// The short form has every size once, with pairs of one body for every second, and a fourth of the presets
+/// The short form has every size once, with pairs of one body for every second, and a sixth of the presets
 /// in turn; on devices other than the host a sixth of these.
 TEST_P(Ladder, EverySizeHasThePairsOfASweep) {
     struct Step {

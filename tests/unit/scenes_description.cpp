@@ -101,7 +101,9 @@ TEST_F(ScenesDescription, ErrorsNameThePath) {
                 HasSubstr("/bodies/0/position/2: must be a finite"));
     EXPECT_THAT(body_failure(R"("rotation": [0, 0, 0, 0])"),
                 HasSubstr("/bodies/0/rotation: must not be the zero"));
-    EXPECT_THAT(body_failure(R"("spin": [0, 0, 0, 1])"), HasSubstr("/bodies/0/spin: must have an axis"));
+    for (const auto* axis : {"0, 0, 0", "1e200, 0, 0", "0, 1e-200, 0"})
+        EXPECT_THAT(body_failure(fmt::format(R"("spin": [{}, 1])", axis)),
+                    HasSubstr("/bodies/0/spin: must have an axis of length 1e-150 to 1e150"));
     EXPECT_THAT(body_failure(R"("poses": [[0, 0, 0, 1, 0, 0, 0]])"), HasSubstr("one pose a frame, 2 in all"));
     EXPECT_THAT(body_failure(R"("fixed": true, "velocity": [1, 0, 0])"), HasSubstr("is fixed and moves"));
     EXPECT_THAT(body_failure(R"("spin": [0, 0, 1, 1e300])"),
