@@ -18,7 +18,7 @@ Duplicates duplicates_named(std::string_view name, std::string_view option) {
 
 double checked_weld(double tolerance, std::string_view option) {
     if (!std::isfinite(tolerance) || tolerance < 0)
-        throw InputError(fmt::format("{} {}: give a tolerance of 0 or more", option, tolerance));
+        throw InputError(fmt::format("{} {}: give a finite tolerance of 0 or more", option, tolerance));
     return tolerance;
 }
 

@@ -111,7 +111,8 @@ class Topology(ColliderCase):
         text = f"{len(self.whole[1])} of {len(self.twice[1])} tetrahedra have the vertices of an earlier one, such as 24 those of 0"
         for kind, words, named in ((ValueError, "duplicates some: give merge, keep or reject", {"duplicates": "some"}),
                                    (TypeError, "duplicates: type int; expected merge, keep or reject", {"duplicates": 1}),
-                                   (ValueError, "weld -1: give a tolerance of 0 or more", {"weld": -1}), (ValueError, "weld nan: give", {"weld": float("nan")}),
+                                   (ValueError, "weld -1: give a finite tolerance of 0 or more", {"weld": -1}),
+                                   (ValueError, "weld inf: give a finite", {"weld": float("inf")}), (ValueError, "weld nan: give", {"weld": float("nan")}),
                                    (TypeError, "weld: type bool; expected a tolerance", {"weld": True}), (ValueError, text, {"duplicates": "reject"})):
             for function, arguments in ((tandem.make_mesh, self.twice), (tandem.read_mesh, [self.paths["twice"]]), (tandem.Collider, [[self.twice]])):
                 with self.subTest(words, function=function.__name__), self.assertRaises(kind) as caught:

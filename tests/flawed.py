@@ -93,7 +93,7 @@ class Flawed(Case):
                      "--duplicates", "reject", *words)
         self.bad("--duplicates some: give merge, keep or reject", "run", "plates", "--duplicates", "some")
         for tolerance in ("-1", "nan", "inf"):
-            self.bad(f"--weld {tolerance}: give a tolerance of 0 or more", "run", "plates", f"--weld={tolerance}")
+            self.bad(f"--weld {tolerance}: give a finite tolerance of 0 or more", "run", "plates", f"--weld={tolerance}")
 
     def test_welded_halves_on_every_device(self):
         """A folded bar of two halves that have vertices of their own where they meet: welded, every algorithm on host and OpenCL leaves out pairs
