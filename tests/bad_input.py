@@ -164,6 +164,28 @@ class Regressions(Case):
                                       "host", "--repeat", 1, "--set", "queue_bytes=1099511627776,67108864", "--dump-pairs",
                                       self.work / "failed.csv")
         self.assertEqual((status, len(errors), text.count(": right: ")), (3, 1, 1))
+        self.assertGreater(len((self.work / "failed.csv").read_text().splitlines()), 100, "of the cell that finished")
+
+    def test_a_dump_is_complete_or_absent(self):
+        """A file with only a header would read as an answer without pairs; a file of the user stays until it is replaced."""
+        pairs, contacts, out = self.work / "pairs.csv", self.work / "contacts.csv", self.work / "once.jsonl"
+        contacts.write_text("mine\n")
+        (self.work / "link.csv").symlink_to(contacts)
+        failing = ("run", "--mesh", self.good, "--mesh", self.good, "--algorithm", "gproximity", "--device", "host", "--repeat", 1,
+                   "--set", "queue_bytes=1099511627776", "--dump-pairs")
+        self.bad("queues", *failing, pairs, "--dump-contacts", self.work / "link.csv", code=3)
+        self.assertEqual((list(self.work.glob("pairs.csv*")), contacts.read_text()), ([], "mine\n"))
+        piped = subprocess.run([str(PROGRAM), *map(str, failing), "/dev/stderr"], capture_output=True, text=True)
+        self.assertNotIn("body_a", piped.stderr)
+        self.assertEqual(self.cell("--repeat", 1, "--out", out, "--dump-pairs", pairs, "--dump-contacts", self.work / "link.csv")[0], 0)
+        self.assertEqual(pairs.read_text().partition("\n")[0], "frame,body_a,tet_a,body_b,tet_b")
+        self.assertGreater(len(contacts.read_text().splitlines()), 10, "a link is followed")
+        pairs.unlink()
+        status, text, _ = self.cell("--repeat", 1, "--out", out, "--resume", "--dump-pairs", pairs)
+        self.assertEqual((status, pairs.exists()), (0, False))
+        self.assertIn("no dump is written: run again without --resume", text)
+        (self.work / "here").symlink_to(self.work)
+        self.bad("named for two outputs", "run", "plates", "--dump-pairs", self.work / "new.csv", "--dump-contacts", self.work / "here/new.csv")
 
     def test_a_failure_is_one_line_without_an_empty_one(self):
         done = subprocess.run([str(PROGRAM), "run", "--mesh", self.good, "--algorithm", "gproximity", "--device", "host", "--set",

@@ -2,21 +2,21 @@
 #pragma once
 
 #include "algorithms/traversal.h"
+#include "base/whole_file.h"
 
-#include <cstdio>
-#include <memory>
 #include <string>
 
 namespace tandem {
 
-/// A CSV file of pairs, contacts or chunks. The constructor opens it, before anything is measured, and throws
-/// InputError, also for an input and a file of records, which stay as they are.
+/// A CSV file of pairs, contacts or chunks, which is there once it is complete: one without its lines would
+/// read as an empty answer. The constructor makes sure, before anything is measured, that it can be written.
 class DumpFile {
 public:
-    /// With an empty path nothing is written.
-    DumpFile(const std::string& path, std::string_view header);
+    /// With an empty path nothing is written. `header` must outlive the file. Throws InputError, also for an
+    /// input and a file of records, which stay as they are.
+    DumpFile(const std::string& path, std::string_view header) : file_(path), header_(header) {}
 
-    explicit operator bool() const { return file_ != nullptr; }
+    explicit operator bool() const { return static_cast<bool>(file_); }
     /// Appends one line for each, in the given order. Coordinates are in the scene's units, as the shortest
     /// decimals that read back as the same numbers. Throws OutputError when the file cannot be written.
     void pairs(std::size_t frame, std::span<const Pair> pairs);
@@ -25,17 +25,15 @@ public:
     /// `leaves` successive positions form a chunk, and `leaves` successive chunks form a super chunk.
     void chunks(std::size_t number, const Mesh& mesh, std::span<const std::uint32_t> order,
                 std::uint32_t leaves);
+    /// Call it after the last line. Throws OutputError.
+    void finish();
 
 private:
-    struct Close {
-        void operator()(std::FILE* file) const { std::fclose(file); }
-    };
-    void clear() const;
-    void write(std::string_view text) const;
-    void write_pieces(std::string& text, std::size_t least) const;
+    std::string begun();
+    void write_pieces(std::string& text, std::size_t least);
 
-    std::string path_;
-    std::unique_ptr<std::FILE, Close> file_;
+    WholeFile file_;
+    std::string_view header_; ///< empty: it is written
 };
 
 inline constexpr std::string_view pairs_header = "frame,body_a,tet_a,body_b,tet_b\n";

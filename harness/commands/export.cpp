@@ -119,6 +119,7 @@ void export_chunks(const ExportOptions& options, const Scene& scene) {
         tetrahedra += order.size();
         chunks += chunk_levels(static_cast<std::uint32_t>(order.size()), leaves).front().chunks;
     }
+    file.finish();
     put("{}: {} mesh{}, {} tetrahedra in {} chunks of up to {}, builder={}, of {}\n", options.chunks,
         scene.meshes.size(), scene.meshes.size() == 1 ? "" : "es", tetrahedra, chunks, leaves,
         options.builder, scene.key);

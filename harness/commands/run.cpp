@@ -45,6 +45,8 @@ void dump(const Cell& cell, const Job& job, DumpFile& pairs, DumpFile& contacts)
             if (const auto found = result.download_contacts(); contacts)
                 contacts.contacts(job.range.first() + i, found);
     }
+    pairs.finish();
+    contacts.finish();
 }
 
 /// Replays the frames and does nothing else, so that a profiler records only the algorithm. Profiling starts
@@ -131,7 +133,7 @@ private:
     std::size_t listed_ = 0, unknown_ = 0, measured_ = 0, left_out_ = 0, verdicts_ = 0;
     double seconds_ = 0;
     bool interrupted_ = false;
-    bool dump_ended_ = false; ///< a signal ended the dump
+    bool dump_ended_ = false; ///< a signal ended the dump, which is not written
 };
 
 Run::Run(const RunOptions& options, RankTeam* team)
@@ -269,14 +271,18 @@ void Run::conclude(const Job& job, const std::map<const Cell*, CellResult>& resu
 /// Prints the last messages and returns the exit code.
 int Run::end(int code) {
     if (options_.profile > 0) return interrupted_ ? Interrupt::exit_code() : code;
-    if (left_out_ > 0) put("{} cells are already in {}\n", left_out_, options_.out);
+    const bool lacks_dump =
+        measured_ == 0 && !(options_.dump_pairs.empty() && options_.dump_contacts.empty());
+    if (left_out_ > 0)
+        put("{} cells are already in {}{}\n", left_out_, options_.out,
+            lacks_dump ? "; no dump is written: run again without --resume" : "");
     if (!options_.out.empty())
         put("{} records appended to {}\n", file_->appended() - verdicts_, options_.out);
     if (!interrupted_ && !file_->failed()) unfinished_.remove();
     if (!interrupted_ || file_->failed()) return code;
     const bool can_resume = !options_.out.empty() && !dump_ended_;
     print_message("tandem: interrupted; {} cells are measured{}{}\n", measured_,
-                  dump_ended_ ? "; the dump lacks frames: run again without --resume" : "",
+                  dump_ended_ ? "; the dump is not written: run again without --resume" : "",
                   can_resume
                       ? fmt::format("; to continue: {}{}", command_line(), options_.resume ? "" : " --resume")
                       : "");

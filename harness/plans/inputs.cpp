@@ -43,6 +43,13 @@ std::size_t parse_number(std::string_view text, const std::string& whole) {
     return value;
 }
 
+/// A path through links; the path itself where that cannot be found, as for a pipe.
+std::filesystem::path followed(const std::filesystem::path& path) {
+    std::error_code code;
+    const auto found = std::filesystem::weakly_canonical(path, code);
+    return code ? path.lexically_normal() : found;
+}
+
 } // namespace
 
 void report_findings(const Scene& scene) {
@@ -129,7 +136,7 @@ void check_coordinates(const Cell& cell, const Scene& scene, const FrameRange& r
 void check_outputs(const RunOptions& options, std::span<const Cell> cells) {
     std::set<std::filesystem::path> paths;
     for (const auto* path : {&options.out, &options.dump_pairs, &options.dump_contacts, &options.trace})
-        if (!path->empty() && !paths.insert(std::filesystem::path(*path).lexically_normal()).second)
+        if (!path->empty() && !paths.insert(followed(*path)).second)
             throw InputError(fmt::format("{}: named for two outputs; choose another file", *path));
     const bool dumps = !options.dump_pairs.empty() || !options.dump_contacts.empty();
     if (options.profile > 0 && (dumps || !options.out.empty() || !options.trace.empty()))

@@ -5,8 +5,8 @@
 #pragma once
 
 #include "backends/device.h"
+#include "base/whole_file.h"
 
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <span>
@@ -27,23 +27,18 @@ struct DeviceTimeline {
 nlohmann::ordered_json timeline_json(std::span<const DeviceTimeline> devices, const std::string& cell,
                                      std::size_t frame);
 
-/// A file that is written atomically: whole or not at all.
+/// A file that is written whole or not at all.
 class TimelineFile {
 public:
-    /// Opens a temporary file beside `path`. Throws InputError when it cannot be written. With an empty path
-    /// nothing is written.
+    /// Throws InputError when the file cannot be written. With an empty path nothing is written.
     explicit TimelineFile(const std::string& path);
-    ~TimelineFile();
-    TimelineFile(const TimelineFile&) = delete;
-    TimelineFile& operator=(const TimelineFile&) = delete;
 
-    explicit operator bool() const { return file_ != nullptr; }
+    explicit operator bool() const { return static_cast<bool>(file_); }
     /// Writes the timeline and replaces the file at the path. Call it at most once. Throws OutputError.
     void write(const nlohmann::ordered_json& timeline);
 
 private:
-    std::string path_, temporary_;
-    std::FILE* file_ = nullptr;
+    WholeFile file_;
 };
 
 } // namespace tandem
