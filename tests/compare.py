@@ -113,6 +113,24 @@ class Compare(Case):
         self.assertIn("too few samples to tell", out)
         self.assertIn("1 has too few samples to tell: 4 rounds on each side are enough", out.replace("\n  ", " "))
 
+    def test_few_rounds_have_no_interval(self):
+        """One round against one, and 12 against 1: the test rejects no ratio, also at a level at which it could show a change."""
+        for old, new, level in ((1, 1, 0.05), (12, 1, 0.05), (3, 3, 0.35), (12, 1, 0.35)):
+            files = self.write(record(samples=old), record(k="18")), self.write(record(2, samples=new), record(k="18"))
+            code = 1 if level > 0.05 else 0
+            out = self.compared(*files, "--level", level, code=code)
+            row, other = (next(line for line in out.splitlines() if line.startswith(name)) for name in ("k=8 ", "k=18 "))
+            self.assertRegex(row, r"  (2\.0|1\.9)\d\d - ")
+            self.assertRegex(other, r"  1\.000 \[0\.99\d, 1\.00\d\] ")
+            self.assertEqual(out.replace("\n  ", " ").count("1 of 2 cells has no interval (-): so few rounds exclude no ratio with 95 % confidence"), 1)
+            self.assertRegex(self.compared(*files, "--format", "markdown", "--level", level, code=code), r"\| (2\.0|1\.9)\d\d - \|")
+            times = self.json_of(*files, "--level", level, code=code)["cells"][0]["times"]
+            self.assertEqual((times["low"], times["high"], times["log_error"], times["least_effect"]), (None, None, None, None))
+            self.assertAlmostEqual(times["ratio"], 2, delta=0.02)
+        page = self.work / "page.html"
+        self.assertEqual(tandem("report", files[1], "--against", files[0], "-o", page)[0], 0)
+        self.assertRegex(page.read_text(), r'"ratio": ?\[(2\.0|1\.9)\d*, ?null, ?null\]')
+
     def test_commits_of_one_file(self):
         both = self.write(record(), record(1.5, commit="bbbb11112222"), record(1, commit="bbbc11112222"))
         for old, new, *more in ((f"{both}@aaaa", f"{both}@bbbb"), (both, both, "--commit-old", "aaaa", "--commit-new", "bbbb"),

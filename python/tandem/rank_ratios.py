@@ -9,7 +9,7 @@ import numpy
 from . import rank_tests
 from .resampling import Ratio, student_quantile
 
-CONFIDENCE = 0.95
+TAIL = (1 - 0.95) / 2  # the probability on each side of an interval
 DIGITS = 14  # of logarithms behind the point; the sums in bisections have errors of about 1e-15
 
 
@@ -32,6 +32,8 @@ def _ratio(count, total, ends, tail, freedom):
         return _smallest(count, number, *ends)
     outside, probability = tail
     value = (at((total + 1) // 2) + at(total // 2 + 1)) / 2
+    if probability > TAIL:  # the test rejects no ratio
+        return Ratio(math.exp(value), None, None, None)
     low, high = at(outside + 1), at(total - outside)
     # The interval of the mean of normal values with this probability is as wide.
     error = (high - low) / (2 * student_quantile(freedom, 1 - 2 * probability)) if high > low else 0.0
@@ -39,25 +41,24 @@ def _ratio(count, total, ends, tail, freedom):
 
 
 def paired_ratio(before, after):
-    """The median of the means of all pairs of logarithms of ratios of paired values; each logarithm is also a pair with itself. With fewer
-    than six values the interval has all of these means, and less than 95 % probability."""
+    """The median of the means of all pairs of logarithms of ratios of paired values; each logarithm is also a pair with itself. Fewer
+    than six values have no interval."""
     logs = numpy.sort(numpy.log(numpy.asarray(after, float) / numpy.asarray(before, float)))
     size = len(logs)
 
     def count(value):
         doubled = int(numpy.searchsorted(logs, 2 * value - logs, "right").sum()) + int(numpy.searchsorted(logs, value, "right"))
         return doubled // 2
-    tail = rank_tests.signed_rank_tail(size, (1 - CONFIDENCE) / 2)
+    tail = rank_tests.signed_rank_tail(size, TAIL)
     return _ratio(count, size * (size + 1) // 2, (float(logs[0]), float(logs[-1])), tail, max(1, size - 1))
 
 
 def unpaired_ratio(before, after):
-    """The median of all differences of logarithms of unpaired values. With very few values the interval has all differences, and less than
-    95 % probability."""
+    """The median of all differences of logarithms of unpaired values. Very few values, as 3 and 3 or 12 and 1, have no interval."""
     before, after = numpy.sort(numpy.log(numpy.asarray(before, float))), numpy.sort(numpy.log(numpy.asarray(after, float)))
 
     def count(value):
         return int(numpy.searchsorted(after, before + value, "right").sum())
-    tail = rank_tests.rank_sum_tail(len(before), len(after), (1 - CONFIDENCE) / 2)
+    tail = rank_tests.rank_sum_tail(len(before), len(after), TAIL)
     ends = float(after[0] - before[-1]), float(after[-1] - before[0])
     return _ratio(count, len(before) * len(after), ends, tail, max(1, len(before) + len(after) - 2))

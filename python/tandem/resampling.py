@@ -102,11 +102,11 @@ def _quantile(ordered, fraction):
 
 @dataclasses.dataclass(frozen=True)
 class Ratio:
-    """A ratio new / old, its 95 % interval, and the standard error of its logarithm."""
+    """A ratio new / old, its 95 % interval, and the standard error of its logarithm. The last three are None where no such interval exists."""
     value: float
-    low: float
-    high: float
-    log_error: float
+    low: float | None
+    high: float | None
+    log_error: float | None
 
 
 def _ratio(log_ratio, values, logs):

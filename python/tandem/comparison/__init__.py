@@ -16,7 +16,7 @@ COLUMNS = ("verdict", "old_ms", "new_ms", "ratio", "low", "high", "p", "p_holm",
 @dataclasses.dataclass(frozen=True)
 class Comparison:
     """cells: one row per cell of both files, indexed by key: verdict (slower, faster, within_threshold, not_shown, too_few,
-    disturbed, another_answer), old_ms and new_ms per frame, ratio with its 95 % interval low to high, p, p_holm (corrected over all cells that
+    disturbed, another_answer), old_ms and new_ms per frame, ratio with its 95 % interval low to high (NaN if none exists), p, p_holm (corrected over all cells that
     can be tested), least_effect (the relative change that would be detected with probability 0.8), paired, threshold.
     only_old, only_new: keys without a counterpart. left_out: "FILE:LINE" of records that failed, are wrong or have no samples."""
     cells: "pandas.DataFrame"

@@ -30,7 +30,7 @@ class ComparedCell:
     undisturbed: the values are those of undisturbed rounds only. before_ns, after_ns: medians over the rounds that are used.
     p: of the signed-rank test of logarithms if paired, else of the rank-sum test. exact: whether p is exact. least_p: the smallest p that
         this number of rounds can give. p_holm: p after correction; None for cells that cannot be tested.
-    least_effect: the relative change that is detected with probability POWER; None for cells that cannot be tested.
+    least_effect: the relative change that is detected with probability POWER; None for cells that cannot be tested or have no interval.
     rounds_needed: for too_few, the number of rounds on each side that is enough.
     Where `before.sessions` > 0, all of this is about sessions instead of rounds.
     """
@@ -159,7 +159,8 @@ def _decide(timed, level):
     for cell, p, least_p in zip(tested, rank_tests.holm([cell.p for cell in tested]), least):
         cell.p_holm = float(p)
         cell.verdict = _verdict(cell, level) if least_p < level else "too_few"
-        cell.least_effect = least_effect(cell.ratio.log_error, level / len(tested)) if least_p < level else None
+        has_effect = least_p < level and cell.ratio.log_error is not None
+        cell.least_effect = least_effect(cell.ratio.log_error, level / len(tested)) if has_effect else None
     return len(tested)
 
 

@@ -91,6 +91,13 @@ def _session_notes(matched):
         yield f"{len(pooled)} {'cell is' if len(pooled) == 1 else 'cells are'} compared by sessions: {counts}"
 
 
+def _interval_notes(matched):
+    """Why an interval is missing."""
+    without = sum(cell.ratio is not None and cell.ratio.low is None for cell in matched.cells)
+    if without:
+        yield f"{without} of {len(matched.cells)} cells {'has' if without == 1 else 'have'} no interval (-): so few rounds exclude no ratio with 95 % confidence"
+
+
 def _disturbed_notes(matched):
     """How many rounds other work disturbed, and what follows."""
     for name, side in (("old", "before"), ("new", "after")):
@@ -123,7 +130,8 @@ def notes(before, after, matched):
         found += _left_out_notes(side, names)
     found += _only_notes("old", matched.only_old, names)
     found += _only_notes("new", matched.only_new, names)
-    return [*found, *_machine_notes(matched), *_session_notes(matched), *_separate_run_notes(matched), *_disturbed_notes(matched)]
+    return [*found, *_machine_notes(matched), *_session_notes(matched), *_separate_run_notes(matched), *_interval_notes(matched),
+            *_disturbed_notes(matched)]
 
 
 def _thresholds(matched):

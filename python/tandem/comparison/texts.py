@@ -24,7 +24,8 @@ def _row(cell, name):
     verdict, name = VERDICTS[cell.verdict], one_line(name, 1000)
     if cell.verdict == "another_answer":
         return name, "-", "-", "-", "-", verdict, "-"
-    ratio = f"{cell.ratio.value:.3f} [{cell.ratio.low:.3f}, {cell.ratio.high:.3f}]"
+    interval = "-" if cell.ratio.low is None else f"[{cell.ratio.low:.3f}, {cell.ratio.high:.3f}]"
+    ratio = f"{cell.ratio.value:.3f} {interval}"
     p = "-" if cell.p_holm is None else "<0.0001" if cell.p_holm < 0.0001 else f"{cell.p_holm:.4f}"
     effect = "-" if cell.least_effect is None else f"{100 * cell.least_effect:.1f} %"
     return name, _milliseconds(cell.before_ns / cell.before.frames), _milliseconds(cell.after_ns / cell.after.frames), ratio, p, verdict, effect
@@ -77,7 +78,7 @@ def _origin_json(cell, median_ns):
 
 
 def _times_json(cell):
-    """Ratio and tests of times; None for a cell with another answer."""
+    """Ratio and tests of times; None for a cell with another answer, and for an interval that does not exist."""
     if cell.ratio is None:
         return None
     test = f"{'signed ranks' if cell.paired else 'rank sums'}, {'exact' if cell.exact else 'normal approximation'}"

@@ -7,14 +7,10 @@ from ..comparison.matching import VERDICTS
 from ..comparison.naming import label
 from ..comparison.notes import notes, summary
 from .data import dumped
-from .numbers import rounded
+from .numbers import optional, rounded
 
 MAX_SHOWN = 3000  # number of cells; the page also has the total number
 LEVEL = 0.05
-
-
-def _optional(value):
-    return None if value is None else rounded(value)
 
 
 def _row(cell, name, number):
@@ -24,8 +20,8 @@ def _row(cell, name, number):
         return row
     ratio = cell.ratio
     return row | {"old": rounded(cell.before_ns / cell.before.frames / 1e6), "new": rounded(cell.after_ns / cell.after.frames / 1e6),
-                  "ratio": [rounded(value) for value in (ratio.value, ratio.low, ratio.high)], "p": _optional(cell.p_holm),
-                  "would_show": _optional(cell.least_effect)}
+                  "ratio": [optional(value) for value in (ratio.value, ratio.low, ratio.high)], "p": optional(cell.p_holm),
+                  "would_show": optional(cell.least_effect)}
 
 
 def differences(old, new, cells):

@@ -6,7 +6,7 @@ import statistics
 from ..comparison.matching import CHANGES, VERDICTS, match
 from ..comparison.naming import label
 from ..comparison.pooling import counting, pooled
-from .numbers import digits, rounded
+from .numbers import digits, optional, rounded
 from .shown_cells import FIELDS
 
 LEVEL = 0.05  # probability of any false move in a page
@@ -121,7 +121,7 @@ def _point(point):
     if compared is None:
         return [*row, None, None, ""]
     ratio = compared.ratio
-    return [*row, ratio and [rounded(value) for value in (ratio.value, ratio.low, ratio.high)], point.moved, VERDICTS[compared.verdict]]
+    return [*row, ratio and [optional(value) for value in (ratio.value, ratio.low, ratio.high)], point.moved, VERDICTS[compared.verdict]]
 
 
 def shown_history(cells):

@@ -7,6 +7,10 @@ def rounded(value):
     return float(f"{value:.6g}")
 
 
+def optional(value):
+    return None if value is None else rounded(value)
+
+
 def digits(value):
     """The text of a ratio or of milliseconds, with at most three decimals for values of at least 0.1."""
     decimals = 5 if value < 0.01 else 4 if value < 0.1 else 3 if value < 10 else 1 if value < 100 else 0

@@ -39,7 +39,7 @@ tandem.number = value => {
   return size >= 1000 ? Math.round(value).toLocaleString("en") : String(+value.toPrecision(4));
 };
 tandem.oneRound = "one round: no interval";
-tandem.brackets = (low, high) => `[${tandem.number(low)}, ${tandem.number(high)}]`;
+tandem.brackets = (low, high) => low === null ? "-" : `[${tandem.number(low)}, ${tandem.number(high)}]`;
 /** The 95 % interval of a cell's time, and its time with the interval. */
 tandem.intervalText = ({ms, rounds}) => rounds > 1 ? tandem.brackets(ms[1], ms[2]) : tandem.oneRound;
 tandem.timeText = cell => `${tandem.number(cell.ms[0])} ms a frame ${cell.rounds > 1 ? tandem.intervalText(cell) : `(${tandem.oneRound})`}`;

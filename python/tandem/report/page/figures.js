@@ -64,13 +64,13 @@ tandem.simulationsFigure = data => {
 tandem.differencesFigure = differences => differences && new tandem.Figure({id: "differences", label: "", choices: [{value: 0, text: ""}], describe: () => {
   const timed = differences.cells.filter(cell => cell.ratio).sort((a, b) => Math.abs(Math.log(b.ratio[0])) - Math.abs(Math.log(a.ratio[0])));
   const shown = timed.slice(0, 40).sort((a, b) => b.ratio[0] - a.ratio[0]);
-  const limits = shown.flatMap(cell => cell.ratio);
+  const limits = shown.flatMap(cell => cell.ratio).filter(value => value !== null);
   const left = differences.of - shown.length;
   return {title: tandem.againstText(differences),
     alt: `New time over old time with 95 % intervals; 1 is no change. ${differences.common}. ${differences.notes.join(" ")}` + (left ? ` ${left} cells that changed less are in the table or left out.` : ""),
     type: "line", height: 110 + 26 * shown.length,
     data: {labels: shown.map(cell => tandem.shortened(cell.label, tandem.nameLength())), datasets: [{label: "new / old", data: shown.map(cell => cell.ratio[0]), showLine: false,
-      intervals: shown.map(cell => cell.ratio.slice(1)), colour: 1}]},
+      intervals: shown.map(cell => cell.ratio[1] === null ? null : cell.ratio.slice(1)), colour: 1}]},
     options: {indexAxis: "y", scales: {x: {title: {display: true, text: "new time over old time, 95 % intervals; above 1 is slower"}, suggestedMin: Math.min(0.95, ...limits), suggestedMax: Math.max(1.05, ...limits),
       grid: {lineWidth: mark => mark.tick && mark.tick.value === 1 ? 3 : 1, color: mark => tandem.ofStyle(mark.tick && mark.tick.value === 1 ? "--text" : "--grid")}},
       y: {offset: true, ticks: {autoSkip: false}}}},
