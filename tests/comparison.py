@@ -232,6 +232,10 @@ class Verdicts(Files):
                 self.compared([old], [new])
             self.assertIn(words, str(caught.exception))
         expect("(1 and 1 cells; the nearest differ in k=8 / k=18)", record("8"), record("18"))
+        def on(devices, k="8"):
+            return record(k) | {"key": f"tiled|{devices}|pile@0a|0:9|k={k}"}
+        expect("(1 and 1 cells; the nearest differ in host:CPU x1 / host:CPU x2)", on("host:CPU x1, g++ 12"), on("host:CPU x2, g++ 12"))
+        expect("differ in g++ 12 / g++ 13, k=8 / k=18)", on("host:CPU x1, g++ 12"), on("host:CPU x1, g++ 13", "18"))
         expect("none of 1 records is ok", record("8"), record("18") | {"status": "wrong"})
         expect("schemas 2 and 3", record("8"), record("18", [1], [0], "s"))
 

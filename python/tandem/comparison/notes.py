@@ -175,9 +175,20 @@ def summary(matched, level):
     return text + _too_few(matched) + _detectable(matched)
 
 
+def _device_differences(before, after):
+    """"X / Y" for the parts in which the devices of two keys differ, such as "host:CPU x1 / host:CPU x2": keys have the number of cores, which no
+    name has. Nothing if names show the difference, and for keys of old schemas, which have no devices."""
+    if any(before.names[name] != after.names[name] for name in ("devices", "model", "driver")) or not before.key.count("|") == after.key.count("|") >= 4:
+        return []
+    pairs = zip(*(cell.key.split("|")[1].split(", ") for cell in (before, after)))
+    return [f"{old} / {new}" for old, new in pairs if old != new]
+
+
 def _differences(before, after):
-    """"X / Y" for each name and each setting in which two cells differ. Presets are left out, because keys do not contain them."""
+    """"X / Y" for each name, each setting and each part of the devices in which two cells differ. Presets are left out, because keys do not
+    contain them."""
     found = [f"{value} / {after.names[name]}" for name, value in before.names.items() if name != "preset" and value != after.names[name]]
+    found += _device_differences(before, after)
 
     def text(cell, name):
         return f"{name}={cell.settings[name]}" if name in cell.settings else f"no {name}"
