@@ -6,7 +6,7 @@ import json
 import sys
 import unittest
 
-from program import LONG, Case, bar, gmsh, tandem
+from program import LONG, SOURCE, Case, bar, gmsh, tandem
 
 
 class Flawed(Case):
@@ -148,6 +148,19 @@ class Flawed(Case):
             for record in self.records(out):
                 self.assertEqual((record["status"], sum(record["work"]["candidate_pairs"])), ("ok", 0))
                 self.assertEqual(record["error"]["inputs"]["non_finite_elements"], 4)
+
+    def test_files_with_numbers_that_are_not_finite(self):
+        """Refused by their readers, whatever --degenerate is, and its help and page say so."""
+        points, tets = bar(2, (0, 0, 0))
+        points[5] = (points[5][0], float("nan"), points[5][2])
+        broken, scene = gmsh(self.work / "broken.msh", points, tets), self.work / "moving.json"
+        whole = gmsh(self.work / "whole.msh", *bar(2, (0, 0, 0)))
+        scene.write_text(json.dumps({"frames": 2, "meshes": {"a": {"file": "whole.msh"}}, "bodies": [{"mesh": "a", "series": ["whole.msh", "broken.msh"]}]}))
+        for handling in ("flat", "skip", "reject"):
+            for words in (("--mesh", whole, "--mesh", broken), (scene,)):
+                self.bad("broken.msh:11: coordinate y 'nan' is not finite; repair the mesh", "run", *words, "--device", "host", "--degenerate", handling)
+        self.assertIn("files with coordinates that are not finite are always refused", " ".join(tandem("run", "--help")[1].split()))
+        self.assertIn("A file with a coordinate that is not finite is refused with every value", (SOURCE / "docs/user/own_data.md").read_text())
 
     def test_a_truth_too_large_for_memory(self):
         """Slivers along a diagonal: all their boxes overlap and would need more memory than there is; their 18-DOPs

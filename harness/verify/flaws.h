@@ -9,6 +9,7 @@
 namespace tandem {
 
 /// Handling of tetrahedra of zero volume and of those with a coordinate that is not finite (--degenerate).
+/// Readers of files refuse the latter before, so only frames made by programs have them.
 enum class Degenerate {
     flat,  ///< treats zero volume like any closed convex set; rejects coordinates that are not finite
     skip,  ///< leaves both out of answers, reference and truth

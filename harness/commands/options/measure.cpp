@@ -97,8 +97,9 @@ void add_run_options(CLI::App& app, RunOptions& options, std::vector<std::string
     app.add_option_function<std::string>(
            "--degenerate",
            [&options](const std::string& text) { options.degenerate = degenerate_named(text); },
-           "tetrahedra of zero volume or with non-finite coordinates: flat (keep the first, refuse the "
-           "second), skip (leave both out) or reject (refuse both) (default: flat)")
+           "tetrahedra of zero volume: flat (keep them), skip (leave them out) or reject (refuse them); "
+           "files "
+           "with coordinates that are not finite are always refused (default: flat)")
         ->option_text("flat|skip|reject");
     app.add_option(
            "--memory", options.memory,
