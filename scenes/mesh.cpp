@@ -118,6 +118,19 @@ void connect(Mesh& mesh, const std::string& source, const MeshReading& reading) 
             copy_boundary(mesh, duplicate);
 }
 
+/// The error for a tetrahedron with a vertex that the mesh does not have. Ids of 1 to n are taken for those
+/// of a program that counts from 1.
+[[noreturn]] void refuse_vertex(const Mesh& mesh, const std::string& source, std::size_t tetrahedron,
+                                std::uint32_t vertex) {
+    const auto last = mesh.vertices.size();
+    const bool from_one = std::ranges::all_of(mesh.tetrahedra, [&](const Tetrahedron& ids) {
+        return std::ranges::all_of(ids, [&](std::uint32_t id) { return id >= 1 && id <= last; });
+    });
+    throw InputError(fmt::format(
+        "{}: tetrahedron {} names vertex {} of {}, numbered from 0; {}", source, tetrahedron, vertex, last,
+        from_one ? "all ids seem to start at 1: subtract 1 from each" : "repair the mesh"));
+}
+
 } // namespace
 
 Tetrahedron joined(const Mesh& mesh, const Tetrahedron& tetrahedron) {
@@ -138,9 +151,7 @@ void complete_mesh(Mesh& mesh, const std::string& source, const MeshReading& rea
             throw InputError(fmt::format("{}: vertex {} is not finite; repair the mesh", source, v));
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
         for (const auto vertex : mesh.tetrahedra[t])
-            if (vertex >= mesh.vertices.size())
-                throw InputError(fmt::format("{}: tetrahedron {} names vertex {} of {}; repair the mesh",
-                                             source, t, vertex, mesh.vertices.size()));
+            if (vertex >= mesh.vertices.size()) refuse_vertex(mesh, source, t, vertex);
     count_flawed(mesh);
     connect(mesh, source, reading);
 }

@@ -80,7 +80,8 @@ struct Foreign {
     std::string_view opening, name;
 };
 constexpr std::array foreign_formats = {Foreign{"MFEM mesh", "MFEM"}, Foreign{"-1", "I-deas UNV"},
-                                        Foreign{"<febio_spec", "FEBio"}};
+                                        Foreign{"<febio_spec", "FEBio"}, Foreign{"\xff\xfe", "UTF-16"},
+                                        Foreign{"\xfe\xff", "UTF-16"}};
 
 /// The name of such a format; empty when unknown. Declarations and comments of XML may come first.
 std::string_view foreign_name(std::string_view bytes) {
@@ -117,6 +118,12 @@ std::string load(const fs::path& path) {
     return read::is_gzip(bytes) ? read::gunzipped(bytes, path.string()) : bytes;
 }
 
+/// The text without a byte-order mark, which some editors put before it.
+std::string_view without_mark(std::string_view bytes) {
+    constexpr std::string_view mark = "\xef\xbb\xbf";
+    return bytes.starts_with(mark) ? bytes.substr(mark.size()) : bytes;
+}
+
 /// A path without the suffix of gzip.
 fs::path unpacked_name(const fs::path& path) {
     return path.extension() == ".gz" ? fs::path(path).replace_extension() : path;
@@ -128,11 +135,12 @@ Mesh read_pair(const fs::path& path, bool is_node, const MeshReading& reading) {
     auto partner = unpacked_name(path).replace_extension(is_node ? ".ele" : ".node");
     if (const auto packed = fs::path(partner.string() + ".gz"); !fs::exists(partner) && fs::exists(packed))
         partner = packed;
-    const auto bytes = load(path);
+    const auto whole = load(path);
     if (!fs::exists(partner))
         throw InputError(fmt::format("{}: missing, the partner of {}; put both into one folder",
                                      partner.string(), path.string()));
-    const auto other = load(partner);
+    const auto whole_partner = load(partner);
+    const auto bytes = without_mark(whole), other = without_mark(whole_partner);
     return is_node ? parse_tetgen(bytes, path.string(), other, partner.string(), reading)
                    : parse_tetgen(other, partner.string(), bytes, path.string(), reading);
 }
@@ -146,6 +154,7 @@ void read::require_tetrahedra(const Mesh& mesh, const std::string& source) {
 
 Mesh parse_mesh(std::string_view bytes, const std::string& source, const MeshReading& reading) {
     if (read::is_gzip(bytes)) return parse_mesh(read::gunzipped(bytes, source), source, reading);
+    bytes = without_mark(bytes);
     if (bytes.empty()) throw InputError(fmt::format("{}: the file is empty; export it again", source));
     const auto suffix = suffix_of(unpacked_name(source).string());
     if (suffix == ".node" || suffix == ".ele")

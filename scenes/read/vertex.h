@@ -17,13 +17,15 @@ Eigen::Vector3d get_point(In& in) {
     return {x, y, z};
 }
 
-/// Converts `index`, counted from `first`, to an index from 0 into `count` vertices. Fails when out of range.
+/// Converts `index`, counted from `first`, to an index from 0 into `count` vertices. Fails when out of range;
+/// an index of `count` may mean that a file counts from 1 where its format counts from 0.
 template<class In>
 std::uint32_t check_index(const In& in, std::int64_t index, std::int64_t first, std::size_t count) {
     const auto last = first + static_cast<std::int64_t>(count) - 1;
     if (index < first || index > last)
         in.fail(fmt::format("vertex {} is out of range: the mesh has {} to {}", index, first, last),
-                "repair the mesh");
+                first == 0 && index == last + 1 ? "number vertices from 0, or repair the mesh"
+                                                : "repair the mesh");
     return static_cast<std::uint32_t>(index - first);
 }
 

@@ -40,6 +40,39 @@ TEST(Read, UnknownFormat) {
     }
 }
 
+/// One tetrahedron in every text format, with a byte-order mark, as some editors write it.
+TEST(Read, AByteOrderMarkIsSkipped) {
+    const std::string mark = "\xef\xbb\xbf", points = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
+    write_file("marked.ele", mark + "1 4 0\n0 0 1 2 3\n");
+    for (const auto& [name, text] :
+         {std::pair<std::string, std::string>{
+              "marked.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n"
+                            "4 0 0 1\n$EndNodes\n$Elements\n1\n1 4 2 0 1 1 2 3 4\n$EndElements\n"},
+          {"marked.mesh", "MeshVersionFormatted 2\nDimension 3\nVertices 4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n"
+                          "0 0 1 0\nTetrahedra 1\n1 2 3 4 0\nEnd\n"},
+          {"marked.veg", "*VERTICES\n4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n*ELEMENTS\nTET\n1 4 0\n"
+                         "0 0 1 2 3\n"},
+          {"marked.vtk", "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n"
+                             + points + "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n"},
+          {"marked.vtu",
+           "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
+           "<UnstructuredGrid><Piece NumberOfPoints=\"4\" NumberOfCells=\"1\">\n<Points>"
+           "<DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">"
+               + points
+               + "</DataArray></Points>\n<Cells><DataArray type=\"Int64\" Name=\"connectivity\" "
+                 "format=\"ascii\">0 1 2 3</DataArray>\n<DataArray type=\"Int64\" Name=\"offsets\" "
+                 "format=\"ascii\">4</DataArray>\n<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">"
+                 "10</DataArray></Cells>\n</Piece></UnstructuredGrid></VTKFile>\n"},
+          {"marked.node", "4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n"}}) {
+        SCOPED_TRACE(name);
+        ASSERT_EQ(message(write_file(name, mark + text)), "no error");
+        const auto mesh = read_mesh(folder() + "/" + name);
+        EXPECT_EQ(mesh.tetrahedra, (std::vector<Tetrahedron>{{0, 1, 2, 3}}));
+        EXPECT_EQ(mesh.vertices[3], Eigen::Vector3d(0, 0, 1));
+    }
+    expect_failure("utf16.vtk", std::string("\xff\xfe#\0 \0", 6), ": ", "format UTF-16 is not read");
+}
+
 TEST(Read, HalfAPair) { EXPECT_THROW(parse_mesh("1 3 0 0\n", "half.node"), InputError); }
 
 /// Reads every mesh of a folder with a table manifest.tsv: file, origin, licence, vertices, tetrahedra, ...

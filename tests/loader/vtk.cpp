@@ -141,6 +141,8 @@ TEST(Vtk, BadNumbers) {
     expect_failure("nan.vtk", replaced(rows, "0 0 1.5", "0 0 nan"), ":10",
                    "coordinate z 'nan' is not finite");
     expect_failure("index.vtk", replaced(rows, "4 4 3 2 1", "4 4 3 6 1"), ":18", "vertex 6 is out of range");
+    expect_failure("one.vtk", replaced(rows, "4 4 3 2 1", "4 5 4 3 6"), ":18",
+                   "the mesh has 0 to 5; number vertices from 0");
     expect_failure("index5.vtk", replaced(offsets, "4 3 2 1\n", "4 3 2 -1\n"), ":13",
                    "vertex -1 is out of range");
     expect_failure("order.vtk", replaced(offsets, "0 3 7 11", "0 7 3 11"), ":11", "offset 3 is below");

@@ -78,6 +78,11 @@ TEST_F(ScenesDescription, FilesAreFoundBesideIt) {
                       "Tetrahedra 1\n1 2 3 4 0\nEnd\n");
     const auto scene = load(R"({"meshes": {"m": {"file": "one.mesh"}}, "bodies": [{"mesh": "m"}]})");
     EXPECT_EQ(scene.name, "scene") << "the file's name";
+    EXPECT_EQ(load("\xef\xbb\xbf"
+                   R"({"meshes": {"m": {"file": "one.mesh"}}, "bodies": [{"mesh": "m"}]})")
+                  .digest,
+              scene.digest)
+        << "with a byte-order mark";
     EXPECT_EQ(tetrahedron_count(scene), 1u);
     EXPECT_THAT(failure(R"({"meshes": {"m": {"file": "two.mesh"}}, "bodies": [{"mesh": "m"}]})"),
                 HasSubstr("two.mesh"));

@@ -62,7 +62,15 @@ TEST(ScenesMesh, VolumeIgnoresOrientation) {
 TEST(ScenesMesh, RefusesInvalidMeshes) {
     auto mesh = pair();
     mesh.tetrahedra[1][3] = 5;
-    EXPECT_THAT(failure(mesh), testing::StartsWith("it.msh: tetrahedron 1 names vertex 5 of 5;"));
+    EXPECT_THAT(failure(mesh), testing::Eq("it.msh: tetrahedron 1 names vertex 5 of 5, numbered from 0; "
+                                           "repair the mesh"));
+    mesh = pair();
+    for (auto& tetrahedron : mesh.tetrahedra)
+        for (auto& vertex : tetrahedron) ++vertex;
+    EXPECT_THAT(failure(mesh), testing::EndsWith(" names vertex 5 of 5, numbered from 0; all ids seem to "
+                                                 "start at 1: subtract 1 from each"));
+    mesh.tetrahedra[0][0] = 6; // beyond such ids, too
+    EXPECT_THAT(failure(mesh), testing::EndsWith("; repair the mesh"));
     mesh = pair();
     mesh.vertices[2].y() = std::numeric_limits<double>::quiet_NaN();
     EXPECT_THAT(failure(mesh), testing::StartsWith("it.msh: vertex 2 is not finite;"));
