@@ -3,6 +3,7 @@
 """flawed.py PROGRAM SOURCE: tetrahedra of zero volume, numbers that are not finite, and a truth too large for
 memory."""
 import json
+import math
 import sys
 import unittest
 
@@ -148,6 +149,37 @@ class Flawed(Case):
             for record in self.records(out):
                 self.assertEqual((record["status"], sum(record["work"]["candidate_pairs"])), ("ok", 0))
                 self.assertEqual(record["error"]["inputs"]["non_finite_elements"], 4)
+
+    def run_cell(self, *words):
+        """The record of a cell, and the lines below its answer."""
+        out = self.work / f"cell{len(list(self.work.iterdir()))}.jsonl"
+        status, text, errors = tandem("run", *words, "--device", "host", "--algorithm", "tiled", "--repeat", 1, "--out", out)
+        self.assertEqual((status, errors), (0, []), text)
+        self.assertIn(": right: ", text)
+        return self.records(out)[0], [line for line in text.splitlines() if "contact_rule=sat gives" in line]
+
+    def test_contacts_deeper_than_a_body(self):
+        """A rod of radius 0.02 on a coarse ground, a tetrahedron of 100 by 320 by 60: the right depth is 0.0617."""
+        count = 32
+        ring = [(0.02 * math.cos(2 * math.pi * i / count), 0.02 * math.sin(2 * math.pi * i / count)) for i in range(count)]
+        points = [(*at, z) for z in (-0.07, 0.07) for at in ring] + [(0, 0, -0.07), (0, 0, 0.07)]
+        tets = [tet for i, j in ((i, (i + 1) % count) for i in range(count))
+                for tet in ([64, i, j, count + i], [64, j, count + j, count + i], [64, count + i, count + j, 65])]
+        rod = gmsh(self.work / "rod.msh", points, tets)
+        ground = gmsh(self.work / "ground.msh", [(0, 0, 0), (100, 320, 0), (0, 320, 0), (33, 213, -60)], [[0, 2, 1, 3]])
+        cell = ("--mesh", ground, "--mesh", rod, "--pose", "0 0 0 1 0 0 0", "--pose", "28.87991333 260.53430176 0.00036136055 0.77515626 -0.16498479 0.36682746 -0.48718625")
+        for isolate in ((), ("--isolate",)):
+            record, lines = self.run_cell(*cell, *isolate)
+            deep = record["error"]["deep_contact"]
+            self.assertEqual((deep["frame"], deep["body_a"], deep["tet_a"], deep["body_b"]), (0, 0, 0, 1))
+            self.assertAlmostEqual(deep["depth"], -29.09, delta=0.01)
+            self.assertAlmostEqual(deep["size"], math.hypot(0.04, 0.04, 0.14), delta=1e-6)
+            self.assertEqual(lines, [f"  contact_rule=opposing: a contact of frame 0, of body 0 tetrahedron 0 and body 1 tetrahedron {deep['tet_b']}, is 29.1 m deep, "
+                                     "but the smaller body is 0.151 m long; contact_rule=sat gives the least depth"])
+        for words in (("--set", "contact_rule=sat"), ("--no-check",), ("--set", "output=digest")):
+            status, text, errors = tandem("run", *cell, *words, "--device", "host", "--algorithm", "tiled", "--repeat", 1, "--out", self.work / "none.jsonl", "--truth", "none")
+            self.assertEqual((status, errors, "the smaller body is" in text), (0, [], False), text)
+        self.assertEqual([record["error"]["deep_contact"] for record in self.records(self.work / "none.jsonl")], [None] * 3)
 
     def test_files_with_numbers_that_are_not_finite(self):
         """Refused by their readers, whatever --degenerate is, and its help and page say so."""

@@ -34,7 +34,7 @@ def changed(record, path, change):
 MAPS = {"settings", "asked", "defines", "counters", "kernel_times", "host_work"}
 NULLABLE = {"chosen", "failure", "agreement", "commit", "hardware", "device_span_ns", "session", "command", "registers", "local_bytes",
             "spill_bytes", "stack_bytes", "missed_upper95", "candidate_ratio", "decisions", "depth_relative", "depth_ulps", "normal_degrees", "point",
-            "hausdorff", "volume_relative", "depth_change"}
+            "hausdorff", "volume_relative", "depth_change", "deep_contact"}
 OF_CONDITION = ("cores", "quota_cores", "own_cores", "other_cores", "governor", "mhz", "throttled_periods", "pressure_percent")
 OF_SAMPLING = ("cells", "seed", "repeat", "noise", "seconds", "spent_seconds", "converged", "drift")
 NULLABLE_PATHS = {("scene", "reading", "weld"), ("environment", "processor"), ("environment", "sources"), ("conditions",), ("ranks",), ("partition",),
@@ -43,7 +43,7 @@ NULLABLE_PATHS = {("scene", "reading", "weld"), ("environment", "processor"), ("
                   ("error", "truth"), ("error", "rounding"), ("error", "truth", "contacts"), ("error", "truth", "drift"),
                   *(("work", name) for name in ("undecided_by_filter", "undecided_by_double", "batches"))}
 # Fields that records of earlier versions lack.
-SINCE = {"stack_bytes", "chosen", "truth", "inputs", "volume_relative", "no_volume"}
+SINCE = {"stack_bytes", "chosen", "truth", "inputs", "volume_relative", "no_volume", "deep_contact"}
 SINCE_PATHS = {("devices", 0, "clock"), ("work", "digest"), ("work", "contact_digest"), ("work", "submissions"), ("work", "rebuilds"), ("work", "dropped_body_pairs"), ("work", "dropped_candidate_pairs"), ("work", "walked_tetrahedra"), ("work", "without_boundary"), ("sampling", "continued"),
                ("host_work",), ("ranks",), ("partition",), ("scene", "reading"), ("error", "rounding")}
 

@@ -109,7 +109,8 @@ inline constexpr Setting<ContactRule> contact_rule{
     ContactRule::opposing,
     {TANDEM_CONTACT_RULES(TANDEM_CHOICE){"none", ContactRule::none}},
     "CONTACT_RULE",
-    TANDEM_CONTACT_RULES(TANDEM_HELP) "none: no contacts"};
+    TANDEM_CONTACT_RULES(TANDEM_HELP) "none: no contacts. opposing and published depend on the order of the "
+                                      "two bodies: some pairs have contacts in one order only"};
 #undef TANDEM_CHOICE
 #undef TANDEM_HELP
 inline constexpr Setting<DecisionPrecision> decision{

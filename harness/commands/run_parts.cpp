@@ -53,6 +53,7 @@ void print_results(std::span<const Row> rows, const std::vector<Verdict>& verdic
         if (!result->measured) continue;
         const auto doubt = doubts(*result);
         put("{}: {}\n", describe(*result->cell), answer_text(result->measurement));
+        for (const auto& line : answer_warnings(result->measurement, job.scene)) put("  {}\n", line);
         if (!doubt.empty()) put("  {}\n", doubt);
     }
 }

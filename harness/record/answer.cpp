@@ -34,6 +34,18 @@ std::string answer_text(const Measurement& m) {
                        a.contact_frames_wrong, a.frames);
 }
 
+std::vector<std::string> answer_warnings(const Measurement& m, const Scene& scene) {
+    std::vector<std::string> lines;
+    if (const auto& c = m.deep_contact)
+        lines.push_back(fmt::format(
+            "contact_rule={}: a contact of frame {}, of body {} tetrahedron {} and body {} tetrahedron {}, "
+            "is {:.3g} {} deep, but the smaller body is {:.3g} {} long; contact_rule=sat gives the least "
+            "depth",
+            m.settings.text("contact_rule"), c->frame, c->body_a, c->tet_a, c->body_b, c->tet_b, -c->depth,
+            scene.units, c->size, scene.units));
+    return lines;
+}
+
 std::string doubts(const CellResult& result) {
     const auto& m = result.measurement;
     std::vector<std::string> notes;

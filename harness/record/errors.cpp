@@ -208,11 +208,33 @@ const Fields<RoundingErrors>& rounding_fields() {
     return fields;
 }
 
+const Fields<DeepContact>& deep_contact_fields() {
+    static const Fields<DeepContact> fields{
+        {"frame", count(), "its frame", &DeepContact::frame},
+        {"body_a", count(), "the first body, by number", &DeepContact::body_a},
+        {"tet_a", count(), "its tetrahedron", &DeepContact::tet_a},
+        {"body_b", count(), "the second body", &DeepContact::body_b},
+        {"tet_b", count(), "its tetrahedron", &DeepContact::tet_b},
+        {"depth", number(), "in the scene's unit of length; negative, as inside", &DeepContact::depth},
+        {"size", number_from(0), "diagonal of the box around the smaller body, in the same unit",
+         &DeepContact::size}};
+    return fields;
+}
+
 const Fields<CellRecord>& one_error() {
     static const Fields<CellRecord> fields{
         {"degenerate_pairs", count(),
          "candidate pairs without contacts because a tetrahedron has no certain volume, over all frames",
          [](auto& r) { return r.m.degenerate; }},
+        {"deep_contact",
+         nullable(deep_contact_fields().type(
+             "the deepest contact of the first frame with contacts that are deeper than the smaller body is "
+             "long, with a rule that needs boundary faces of both tetrahedra; null: there is none, or "
+             "answers "
+             "were not checked; records from before it have none")),
+         "",
+         [](auto& r) { return r.m.deep_contact ? deep_contact_fields().write(*r.m.deep_contact) : Json(); },
+         {.optional = true}},
         {"inputs",
          input_fields().type(
              "flawed tetrahedra of the frames as they were given: of exactly zero volume, or with "

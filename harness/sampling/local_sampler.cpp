@@ -88,6 +88,16 @@ void LocalSampler::add_dropped(std::size_t index) {
     out_.dropped_candidate_pairs.push_back(expected.dropped_pairs);
 }
 
+/// Rules that need boundary faces of both tetrahedra take the depth along faces that need not be in contact.
+/// The first frame with a contact beyond its body is enough, because contacts are many.
+void LocalSampler::find_deep_contact(std::size_t index, const FrameResult& result) {
+    if (!makes_contacts() || boundaries_needed(out_.settings[parameters::contact_rule]) != 2) return;
+    if (!decided(cell_.team, !out_.deep_contact)) return;
+    const auto contacts = result.download_contacts();
+    if (!is_first(cell_.team)) return;
+    out_.deep_contact = deepest_beyond_body(scene_, *range_.frame(index), range_.first() + index, contacts);
+}
+
 /// Truths stores errors by digest, so that it downloads an answer only when no other cell had the same one.
 /// Ranks download collectively, and therefore always.
 void LocalSampler::add_errors(Truths& truths, std::size_t index, const FrameResult& result,
@@ -145,6 +155,7 @@ void LocalSampler::check_answer(std::size_t index, const FrameResult& result, co
                 digest = expected;
         compare(index, result, digest, contacts);
         add_dropped(index);
+        find_deep_contact(index, result);
     }
     if (options.truths != nullptr && result.has_pairs() && has_truth(*options.truths))
         add_errors(*options.truths, index, result, digest, contacts,

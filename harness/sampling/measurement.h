@@ -3,6 +3,7 @@
 #pragma once
 
 #include "harness/verify/accuracy/answer_errors.h"
+#include "harness/verify/deep_contact.h"
 #include "harness/sampling/conditions.h"
 #include "harness/plans/cells.h"
 
@@ -117,7 +118,8 @@ struct Measurement {
     std::uint64_t submissions = 0;               ///< calls that submitted work, in the last sample
     std::map<std::string_view, std::uint64_t> work; ///< by counter, over the frames; empty when not counted
     Agreement agreement;
-    std::optional<AnswerErrors> errors; ///< against the exact truth; empty when not requested
+    std::optional<AnswerErrors> errors;      ///< against the exact truth; empty when not requested
+    std::optional<DeepContact> deep_contact; ///< of the first frame with any; empty when not checked
     std::vector<KernelFacts> kernels;
     std::int64_t prepare_ns = 0; ///< of the first session, with compilation; not part of any sample
     std::size_t device_bytes = 0;
