@@ -156,7 +156,7 @@ class Flawed(Case):
         status, text, errors = tandem("run", *words, "--device", "host", "--algorithm", "tiled", "--repeat", 1, "--out", out)
         self.assertEqual((status, errors), (0, []), text)
         self.assertIn(": right: ", text)
-        return self.records(out)[0], [line for line in text.splitlines() if "contact_rule=sat gives" in line]
+        return self.records(out)[0], [line for line in text.splitlines() if "contact_rule=sat gives" in line or "cannot resolve" in line]
 
     def test_contacts_deeper_than_a_body(self):
         """A rod of radius 0.02 on a coarse ground, a tetrahedron of 100 by 320 by 60: the right depth is 0.0617."""
@@ -180,6 +180,26 @@ class Flawed(Case):
             status, text, errors = tandem("run", *cell, *words, "--device", "host", "--algorithm", "tiled", "--repeat", 1, "--out", self.work / "none.jsonl", "--truth", "none")
             self.assertEqual((status, errors, "the smaller body is" in text), (0, [], False), text)
         self.assertEqual([record["error"]["deep_contact"] for record in self.records(self.work / "none.jsonl")], [None] * 3)
+
+    def test_single_precision_that_cannot_resolve_a_mesh(self):
+        points, tets = bar(2, (0, 0, 0))
+        near, far = gmsh(self.work / "near.msh", points, tets), 2.0**33
+        pose = f"{far} 0 0 1 0 0 0"
+        cell = ("--mesh", near, "--mesh", near, "--pose", pose, "--pose", pose)
+        record, lines = self.run_cell(*cell)
+        self.assertEqual(record["error"]["flattened"], 2 * len(tets))
+        self.assertEqual(lines, [f"  single precision cannot resolve mesh near of body 0: {len(tets)} of {len(tets)} tetrahedra become flat; use precision=double or origin=auto"])
+        for words in (("--set", "precision=double"), ("--set", "origin=auto")):
+            record, lines = self.run_cell(*cell, *words)
+            self.assertEqual((record["error"]["flattened"], lines), (0, []))
+        flat, _ = self.flawed("still.msh")  # a tetrahedron that is flat in double, too
+        self.assertEqual(self.run_cell("--mesh", flat, "--mesh", near)[0]["error"]["flattened"], 0)
+        for frame in (0, 1):
+            gmsh(self.work / f"moved{frame}.msh", [(x + far, y, z) for x, y, z in points], tets)
+        scene = self.work / "deforming.json"
+        scene.write_text(json.dumps({"frames": 2, "meshes": {"a": {"file": "near.msh"}},
+                                     "bodies": [{"mesh": "a", "position": [far, 0, 0], "fixed": True}, {"mesh": "a", "series": ["moved0.msh", "moved1.msh"]}]}))
+        self.assertEqual(self.run_cell(scene)[0]["error"]["flattened"], 2 * len(tets))
 
     def test_files_with_numbers_that_are_not_finite(self):
         """Refused by their readers, whatever --degenerate is, and its help and page say so."""

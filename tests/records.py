@@ -43,7 +43,7 @@ NULLABLE_PATHS = {("scene", "reading", "weld"), ("environment", "processor"), ("
                   ("error", "truth"), ("error", "rounding"), ("error", "truth", "contacts"), ("error", "truth", "drift"),
                   *(("work", name) for name in ("undecided_by_filter", "undecided_by_double", "batches"))}
 # Fields that records of earlier versions lack.
-SINCE = {"stack_bytes", "chosen", "truth", "inputs", "volume_relative", "no_volume", "deep_contact"}
+SINCE = {"stack_bytes", "chosen", "truth", "inputs", "volume_relative", "no_volume", "deep_contact", "flattened"}
 SINCE_PATHS = {("devices", 0, "clock"), ("work", "digest"), ("work", "contact_digest"), ("work", "submissions"), ("work", "rebuilds"), ("work", "dropped_body_pairs"), ("work", "dropped_candidate_pairs"), ("work", "walked_tetrahedra"), ("work", "without_boundary"), ("sampling", "continued"),
                ("host_work",), ("ranks",), ("partition",), ("scene", "reading"), ("error", "rounding")}
 

@@ -43,6 +43,14 @@ std::vector<std::string> answer_warnings(const Measurement& m, const Scene& scen
             "depth",
             m.settings.text("contact_rule"), c->frame, c->body_a, c->tet_a, c->body_b, c->tet_b, -c->depth,
             scene.units, c->size, scene.units));
+    if (const auto& f = m.flattened; f.tetrahedra > 0) {
+        const auto& mesh = scene.meshes[scene.bodies[f.body].mesh];
+        const bool is_world = m.settings[parameters::origin] == Origin::world;
+        lines.push_back(fmt::format(
+            "single precision cannot resolve mesh {} of body {}: {} of {} tetrahedra become flat; use "
+            "precision=double{}",
+            mesh.name, f.body, f.of_body, mesh.tetrahedra.size(), is_world ? " or origin=auto" : ""));
+    }
     return lines;
 }
 

@@ -235,6 +235,12 @@ const Fields<CellRecord>& one_error() {
          "",
          [](auto& r) { return r.m.deep_contact ? deep_contact_fields().write(*r.m.deep_contact) : Json(); },
          {.optional = true}},
+        {"flattened",
+         count(),
+         "tetrahedra with volume that have none by the vertices as the device has them, in the first "
+         "frame; 0 when answers were not checked; records from before it have none",
+         [](auto& r) { return r.m.flattened.tetrahedra; },
+         {.optional = true, .column = "flattened"}},
         {"inputs",
          input_fields().type(
              "flawed tetrahedra of the frames as they were given: of exactly zero volume, or with "

@@ -21,6 +21,7 @@ TANDEM_FIELDS(GpuCondition, sm_mhz, sm_limit_mhz, memory_mhz, memory_limit_mhz, 
 TANDEM_FIELDS(Condition, processor, gpus)
 TANDEM_FIELDS(RoundConditions, round, before, after)
 TANDEM_FIELDS(DeepContact, frame, body_a, tet_a, body_b, tet_b, depth, size)
+TANDEM_FIELDS(Flattened, tetrahedra, body, of_body)
 TANDEM_FIELDS(Agreement, frames, missing, extra, contact_frames_wrong, digest, contact_digest)
 
 namespace {
@@ -74,6 +75,7 @@ void each_checked(State& state, const Each& each) {
     each("batches", m.batches);
     each("errors", m.errors);
     each("deep_contact", m.deep_contact);
+    each("flattened", m.flattened);
     each("kernels", m.kernels);
     each("first_prepare_ns", m.prepare_ns);
     each("device_bytes", m.device_bytes);

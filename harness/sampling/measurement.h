@@ -4,6 +4,7 @@
 
 #include "harness/verify/accuracy/answer_errors.h"
 #include "harness/verify/deep_contact.h"
+#include "harness/verify/flattened.h"
 #include "harness/sampling/conditions.h"
 #include "harness/plans/cells.h"
 
@@ -120,6 +121,7 @@ struct Measurement {
     Agreement agreement;
     std::optional<AnswerErrors> errors;      ///< against the exact truth; empty when not requested
     std::optional<DeepContact> deep_contact; ///< of the first frame with any; empty when not checked
+    Flattened flattened;                     ///< in the first frame
     std::vector<KernelFacts> kernels;
     std::int64_t prepare_ns = 0; ///< of the first session, with compilation; not part of any sample
     std::size_t device_bytes = 0;

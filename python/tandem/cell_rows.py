@@ -11,7 +11,7 @@ TYPES = {field["column"]: field["type"] for field in _FIELDS}  # integer, number
 _ORDER = (
     "status", "failure", "algorithm", "preset", "device", "device_name", "driver", "scene", "scene_digest", "bodies", "tetrahedra",
     "first_frame", "last_frame", "ms", "ms_low", "ms_high", "samples", "rounds", "converged", "disturbed", "device_span_ms",
-    "launches", "waits", "candidate_pairs", "contacts", "missing", "extra", "contact_frames_wrong", "pairs_missed", "rounding_lost", "rounding_extra", "rounding_depth_change",
+    "launches", "waits", "candidate_pairs", "contacts", "missing", "extra", "contact_frames_wrong", "pairs_missed", "rounding_lost", "rounding_extra", "rounding_depth_change", "flattened",
     "device_bytes", "commit", "dirty", "date", "session", "key")
 FIRST_COLUMNS = (*_ORDER, *(name for name in _PATHS if name not in _ORDER))
 GROUPS = ("stage_", "count_", "set_")  # prefixes of further columns
