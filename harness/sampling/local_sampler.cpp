@@ -182,7 +182,7 @@ void LocalSampler::do_check(const CheckOptions& options) {
     out_.walked_tetrahedra = count_walked(scene_, walked_of(out_.settings));
     geometry_ = geometry_of(out_.settings);
     if (options.check && is_first(cell_.team))
-        out_.flattened = count_flattened(scene_, *range_.frame(0, geometry_.origin), geometry_.precision);
+        out_.flattened = count_flattened(scene_, *range_.frame(0, geometry_.origin), geometry_);
     const auto replay = replays_->timed(
         [&](std::size_t index, const FrameResult& result) { check_answer(index, result, options); });
     state_.replay_ns = replay.total_ns();

@@ -30,14 +30,14 @@ std::uint64_t count_flattened(const Mesh& mesh, std::span<const Eigen::Vector3d>
     return count;
 }
 
-Flattened count_flattened(const Scene& scene, const Frame& frame, Precision precision) {
+Flattened count_flattened(const Scene& scene, const Frame& frame, const Geometry& geometry) {
     Flattened result;
-    if (precision == Precision::fp64) return result;
+    if (geometry.precision == Precision::fp64) return result;
     std::vector<std::uint64_t> counts(scene.bodies.size());
     parallel_for(counts.size(), [&](std::size_t body) {
         const auto& mesh = scene.meshes[scene.bodies[body].mesh];
         const auto& given = scene.bodies[body].deformable ? frame.deformed[body] : mesh.vertices;
-        const auto rounded = world_vertices<float>(scene, frame, body);
+        const auto rounded = world_vertices<float>(scene, frame, body, geometry.origin);
         counts[body] = count_flattened<float>(mesh, given, rounded);
     });
     for (std::uint32_t body = 0; body < counts.size(); ++body) {

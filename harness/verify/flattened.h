@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/parameters/choices.h"
+#include "algorithms/bounds/geometry.h"
 #include "scenes/scene.h"
 
 #include <array>
@@ -24,6 +24,6 @@ std::uint64_t count_flattened(const Mesh& mesh, std::span<const Eigen::Vector3d>
                               std::span<const std::array<Real, 3>> rounded);
 
 /// `frame` is relative to the session's origin. With double nothing is counted.
-Flattened count_flattened(const Scene& scene, const Frame& frame, Precision precision);
+Flattened count_flattened(const Scene& scene, const Frame& frame, const Geometry& geometry);
 
 } // namespace tandem

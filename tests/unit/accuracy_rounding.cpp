@@ -101,7 +101,11 @@ TEST(AccuracyRounding, CountsEveryPairOfAFarFrame) {
 TEST(AccuracyRounding, SeesWhetherAVertexIsRounded) {
     const auto is_rounded = [](const Scene& scene, Precision precision, Origin setting = Origin::world) {
         const FrameRange range(scene, 0, 0);
-        return rounds({scene, range.frame(0), range.frame(0, setting), range.origin(setting), precision});
+        return rounds({scene,
+                       range.frame(0),
+                       range.frame(0, setting),
+                       range.origin(setting),
+                       {precision, Placement::rounded, setting}});
     };
     EXPECT_FALSE(is_rounded(two_corners({0.75, 0, 0x1p-20}), Precision::fp32));
     EXPECT_TRUE(is_rounded(two_corners({0.75, 0, 0x1p-26}), Precision::fp32));

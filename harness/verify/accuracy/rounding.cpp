@@ -29,7 +29,7 @@ Vector<mpq_class> input_point(const Scene& scene, const Frame& input, std::uint3
 
 template<class Real>
 bool rounds_body(const RoundedFrame& frame, std::uint32_t body) {
-    const auto vertices = world_vertices<Real>(frame.scene, *frame.cell, body);
+    const auto vertices = world_vertices<Real>(frame.scene, *frame.cell, body, frame.positions.origin);
     for (std::uint32_t i = 0; i < vertices.size(); ++i) {
         const bool is_finite = std::ranges::all_of(vertices[i], [](Real x) { return std::isfinite(x); });
         if (!is_finite) continue; // its tetrahedra are in no pair
@@ -91,8 +91,8 @@ void RoundingErrors::add(const RoundingErrors& other) {
 
 bool rounds(const RoundedFrame& frame) {
     for (std::uint32_t body = 0; body < frame.scene.bodies.size(); ++body)
-        if (frame.precision == Precision::fp64 ? rounds_body<double>(frame, body)
-                                               : rounds_body<float>(frame, body))
+        if (frame.positions.precision == Precision::fp64 ? rounds_body<double>(frame, body)
+                                                         : rounds_body<float>(frame, body))
             return true;
     return false;
 }
@@ -108,7 +108,7 @@ RoundingErrors rounding_errors(const FrameTruth& cell, const FrameTruth& input) 
 double depth_change(const RoundedFrame& frame, const FrameTruth& cell, const FrameTruth& input,
                     std::size_t most) {
     const auto pairs = overlapping_pairs(cell, input, most);
-    const auto rounded = pair_corners(frame.scene, *frame.cell, frame.precision, pairs);
+    const auto rounded = pair_corners(frame.scene, *frame.cell, frame.positions, pairs);
     std::vector<double> changes(pairs.size());
     parallel_for(pairs.size(), [&](std::size_t i) {
         const auto exact = input_corners(frame.scene, *frame.input, pairs[i]);

@@ -29,7 +29,7 @@ struct RoundedFrame {
     const Scene& scene;
     std::shared_ptr<const Frame> input, cell;
     Eigen::Vector3d origin;
-    Precision precision;
+    Positions positions; ///< those of the cell
 };
 
 /// Whether a vertex of the cell is not exactly the input's. Stops at the first one, which is among the first

@@ -86,7 +86,7 @@ const FrameTruth& Truths::walked_truth_of(const FramePosition& position, Walked 
 RoundedFrame Truths::rounded_frame(const FramePosition& cell) const {
     const auto& [positions, index] = cell;
     return {scene_, range_.frame(index), range_.frame(index, positions.origin),
-            range_.origin(positions.origin), positions.precision};
+            range_.origin(positions.origin), positions};
 }
 
 /// The truth by the input is that by the cell's vertices where these are the input's.
