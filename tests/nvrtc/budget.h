@@ -20,12 +20,13 @@ struct Budget {
 };
 
 /// Budget of the kernel that makes contacts: a quarter of a multiprocessor's work-items in float. Only rules
-/// that search axes or cut polygons have private arrays in device memory.
+/// that search axes or cut polygons have private arrays in device memory. Rule clip has numbers of two words,
+/// which spill in double.
 inline Budget contacts_budget(ContactRule rule, bool in_double) {
     const int registers = in_double ? 192 : 128;
     switch (rule) {
     case ContactRule::clip:
-        return {registers, in_double ? 1024 : 512};
+        return {registers, in_double ? 2048 : 512};
     case ContactRule::sat:
     case ContactRule::restricted:
     case ContactRule::growth:
@@ -43,7 +44,7 @@ inline Budget contacts_budget(ContactRule rule, bool in_double) {
 inline Budget at_once_budget(ContactRule rule, bool in_double) {
     switch (rule) {
     case ContactRule::clip:
-        return in_double ? Budget{255, 1024} : Budget{168, 512};
+        return in_double ? Budget{255, 2048} : Budget{168, 512};
     case ContactRule::sat:
     case ContactRule::restricted:
     case ContactRule::growth:
