@@ -159,7 +159,14 @@ auto number() {
     return [](const Answer& self) { return self.result().*member; };
 }
 
-nb::tuple digest_tuple(const Digest& digest) { return nb::make_tuple(digest.count, digest.a, digest.b); }
+template<auto which>
+nb::tuple digest(const Answer& answer) {
+    const auto [count, a, b] = [&] {
+        const nb::gil_scoped_release released;
+        return (answer.*which)();
+    }();
+    return nb::make_tuple(count, a, b);
+}
 
 } // namespace
 
@@ -172,8 +179,8 @@ void bind_answer(nb::module_& module) {
         .def_prop_ro("seconds", &Answer::seconds)
         .def_prop_ro("retries", number<&FrameResult::retries>())
         .def_prop_ro("batches", number<&FrameResult::batches>())
-        .def("digest", [](const Answer& self) { return digest_tuple(self.digest()); })
-        .def("contact_digest", [](const Answer& self) { return digest_tuple(self.contact_digest()); })
+        .def("digest", &digest<&Answer::digest>)
+        .def("contact_digest", &digest<&Answer::contact_digest>)
         .def("pairs", &pairs<&Answer::pairs>)
         .def("meeting", &pairs<&Answer::meeting>)
         .def("contacts", &contacts)
