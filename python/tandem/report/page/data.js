@@ -40,6 +40,8 @@ tandem.number = value => {
 };
 tandem.oneRound = "one round: no interval";
 tandem.brackets = (low, high) => low === null ? "-" : `[${tandem.number(low)}, ${tandem.number(high)}]`;
+/** The interval behind a ratio in a sentence; nothing where none exists. */
+tandem.withInterval = (low, high) => low === null ? "" : ` ${tandem.brackets(low, high)}`;
 /** The 95 % interval of a cell's time, and its time with the interval. */
 tandem.intervalText = ({ms, rounds}) => rounds > 1 ? tandem.brackets(ms[1], ms[2]) : tandem.oneRound;
 tandem.timeText = cell => `${tandem.number(cell.ms[0])} ms a frame ${cell.rounds > 1 ? tandem.intervalText(cell) : `(${tandem.oneRound})`}`;
@@ -76,7 +78,7 @@ tandem.unpack = (data, differences) => {
     return cell;
   });
   for (const {cell, ratio, verdict} of differences?.cells ?? [])
-    if (data.cells[cell]) data.cells[cell].against = (ratio ? `${tandem.number(ratio[0])} ${tandem.brackets(ratio[1], ratio[2])} times the time in ${differences.old}: ` : "") + verdict;
+    if (data.cells[cell]) data.cells[cell].against = (ratio ? `${tandem.number(ratio[0])}${tandem.withInterval(ratio[1], ratio[2])} times the time in ${differences.old}: ` : "") + verdict;
   data.groups.forEach((group, number) => {
     group.number = number;
     group.cells = group.cells.map(index => data.cells[index]);
