@@ -105,12 +105,8 @@ TEST_P(DeviceFrames, DecideTheOriginOfTheSession) {
     bare.frame = nullptr;
     const auto from_host = prepare("tiled", bare, {}), from_device = prepare("tiled", bare, {});
     for (const double x : {1e5, 0.0, -3e6}) {
-        auto frame = scene.frame(0);
-        for (auto& pose : frame.poses) pose.translation.x() += x;
-        for (auto& vertex : frame.deformed[1]) vertex.x() += x;
-        frame.poses[1] = {};
-        Rows rows(frame, false), flawed(scene.frame(0), false);
-        flawed.poses[7 * 3] = 1e37;
+        const Rows rows(moved(scene, {x, 0, 0}).frame(0), false);
+        const Rows flawed(moved(scene, {2e37, 0, 0}).frame(0), false);
         EXPECT_NE(rejection([&] { from_device->run(flawed.uploaded_to(on)); }), "");
         const auto right = from_host->run(rows.host);
         expect_equal(from_device->run(rows.uploaded_to(on)), right);

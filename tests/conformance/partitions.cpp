@@ -59,8 +59,7 @@ TEST_F(Partitions, AnswersEqualOneDevice) {
         }
 }
 
-/// Without Scene::frame the first frame decides the origin of all devices, after reset() the next one: bodies
-/// that move by as much as the origin, but for the fixed one, have not moved for a partition that is kept.
+/// Without Scene::frame the first frame decides the origin of all devices, after reset() the next one.
 TEST_F(Partitions, TheFirstFrameDecidesTheOriginOfAllDevices) {
     const auto scene = procession(24, 2, 0.35);
     auto bare = scene;
@@ -80,6 +79,21 @@ TEST_F(Partitions, TheFirstFrameDecidesTheOriginOfAllDevices) {
             both->reset();
             one->reset();
         }
+    }
+}
+
+/// Bodies that move as the origin does have not moved for a partition, but the fixed one has.
+TEST_F(Partitions, APartitionOfAnotherOriginIsNotKept) {
+    const auto scene = passing();
+    auto bare = scene;
+    bare.frame = nullptr;
+    for (const std::string broad : {"device", "tight"}) {
+        const auto both = on_two_devices(algorithm("tiled"), bare, {{"broad", broad}});
+        both->run(scene.frame(0));
+        both->reset();
+        const auto right = on_host(algorithm("tiled"), bare, {{"broad", broad}})->run(scene.frame(1));
+        EXPECT_EQ(right.download().front().body_a, 0u) << "the fixed body";
+        expect_equal(both->run(scene.frame(1)), right);
     }
 }
 

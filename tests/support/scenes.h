@@ -158,6 +158,22 @@ inline Scene moved(Scene scene, const Eigen::Vector3d& offset) {
     return scene;
 }
 
+/// Two frames of a procession, whose fixed body meets the others in the second only. With the origin in the
+/// middle of each frame, all bodies but the fixed one have the same coordinates in both.
+inline Scene passing() {
+    auto scene = procession(24, 2, 0);
+    scene.frame = [near = scene.frame](std::size_t number) {
+        auto frame = near(number);
+        const Eigen::Vector3d offset(128.0 * static_cast<double>(number), 0, 0);
+        for (auto& pose : frame.poses) pose.translation += offset;
+        for (auto& vertex : frame.deformed[1]) vertex += offset;
+        frame.poses[0].translation = {128 + 14, 0, 0};
+        frame.poses[1] = {};
+        return frame;
+    };
+    return scene;
+}
+
 /// Boxes around a centre, closer in some frames than in others: the numbers of pairs and contacts grow and
 /// shrink from frame to frame, by small and large factors.
 inline Scene breathing(std::size_t bodies) {

@@ -141,6 +141,22 @@ TEST_P(OriginSessions, WithoutFramesOfTheSceneTheFirstOneDecides) {
     }
 }
 
+/// A frame after reset() has the bits of the first frame of a session, whatever ran before it.
+TEST_P(OriginSessions, FixedBodiesMoveWithTheOrigin) {
+    const auto scene = passing(), bare = without_frames(scene);
+    for (const SettingTexts& settings : {SettingTexts{}, SettingTexts{{"broad", "device"}}}) {
+        const auto session = prepare(bare, settings), fresh = prepare(bare, settings);
+        session->run(scene.frame(0));
+        EXPECT_EQ(session->origin(), Vector::Zero());
+        session->reset();
+        const auto found = session->run(scene.frame(1)), right = fresh->run(scene.frame(1));
+        EXPECT_EQ(session->origin(), Vector(128, 0, 0));
+        EXPECT_EQ(right.download().front().body_a, 0u) << "the fixed body";
+        EXPECT_EQ(found.digest(), right.digest());
+        EXPECT_EQ(found.contact_digest(), right.contact_digest());
+    }
+}
+
 TEST_P(OriginSessions, AFrameThatIsRefusedDecidesNothing) {
     const auto near = crowd_at(Vector::Zero()), away = crowd_at(far_offset), bare = without_frames(near);
     const auto session = prepare(bare, {});
