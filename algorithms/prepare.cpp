@@ -36,6 +36,16 @@ void check_arithmetic(const Settings& settings, const DeviceInfo& info) {
                         settings.text("decision"), info.id));
 }
 
+/// Resolves decision=usual.
+Settings with_decision(Settings settings, const DeviceInfo& info) {
+    if (settings[parameters::decision] != DecisionPrecision::usual) return settings;
+    const bool moves = settings[parameters::motion] == Motion::linear; // needs exact decisions
+    settings.set(parameters::decision(!info.has_double ? DecisionPrecision::fp32
+                                      : moves          ? DecisionPrecision::exact
+                                                       : DecisionPrecision::recheck));
+    return settings;
+}
+
 /// Throws InputError if other settings do not fit motion=linear.
 void check_motion_settings(const Settings& settings) {
     if (settings[parameters::motion] != Motion::linear) return;
@@ -193,12 +203,20 @@ void Traversal::do_fit(Settings&, const DeviceInfo&, const Scene*) const {}
 
 AlgorithmStages Traversal::build(const BuildContext& context) const { return do_build(context); }
 
-Settings Traversal::settings(const SettingTexts& given, std::string_view preset) const {
-    const auto& chosen = preset.empty() ? presets().front() : tandem::preset(*this, preset);
-    return resolve(parameters(), chosen.values, given, name());
+SettingTexts with_reliable_contacts(SettingTexts given) {
+    given.try_emplace("contact_rule", "sat");
+    given.try_emplace("decision", "usual");
+    return given;
 }
 
-Settings Traversal::fitted(const Settings& settings, const DeviceInfo& info, const Scene* scene) const {
+Settings Traversal::settings(const SettingTexts& given, std::string_view preset) const {
+    const auto& chosen = preset.empty() ? presets().front() : tandem::preset(*this, preset);
+    return resolve(parameters(), chosen.values, chosen.reproduces ? given : with_reliable_contacts(given),
+                   name());
+}
+
+Settings Traversal::fitted(const Settings& asked, const DeviceInfo& info, const Scene* scene) const {
+    const auto settings = with_decision(asked, info);
     check_arithmetic(settings, info);
     auto fitting = settings;
     const auto wanted = settings[tandem::parameters::group_size];

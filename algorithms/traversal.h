@@ -167,6 +167,9 @@ struct LaunchShape {
     std::uint32_t groups = 1;     ///< for kernels with strided loops
 };
 
+/// The settings with the contact rule and the decision to rely on, where neither is given.
+SettingTexts with_reliable_contacts(SettingTexts given);
+
 /// A way to find candidate pairs. Stateless; added by one line in list.cpp.
 class Traversal {
 public:
@@ -181,8 +184,10 @@ public:
     /// The counters of its walks.
     virtual std::span<const Counter> counters() const = 0;
 
-    /// Settings by name, over those of a preset; empty: the first preset. Throws InputError for an unknown
-    /// name or value, which it names.
+    /// Settings by name, over those of a preset; empty: the first preset. Unless given, contacts are those to
+    /// rely on: contact_rule=sat and decision=usual. A preset that reproduces a program of others
+    /// (Preset::reproduces) keeps the paper's `opposing`, as all presets of `tandem run` do. Throws
+    /// InputError for an unknown name or value, which it names.
     Settings settings(const SettingTexts& given = {}, std::string_view preset = {}) const;
 
     /// Adapts settings to a device, such as to groups of one work-item if it has no larger ones. `scene`: the

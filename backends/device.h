@@ -280,12 +280,9 @@ public:
     /// The value of memory_limit() when there is no limit.
     static constexpr std::size_t no_memory_limit = std::numeric_limits<std::size_t>::max();
 
-    /// For tests. Writes a byte pattern (buffer_guards.h) behind each new buffer, which check_guards()
-    /// verifies. Traces and bytes_allocated() do not change.
+    /// For tests. Writes a pattern (buffer_guards.h) behind each new buffer; traces do not change.
     void guard_buffers();
-    /// For tests, with guard_buffers(). Fills every live buffer with copies of `word`, except those whose
-    /// label is in `kept`, and from now on every new buffer: whatever a kernel reads without having written
-    /// it is then wrong in the same way on every device.
+    /// For tests. Fills all buffers but those labelled as in `kept`, and later every new one, with `word`.
     void fill_buffers(std::uint32_t word, std::span<const std::string_view> kept);
     /// Waits, and throws std::logic_error when something was written past the end of a guarded buffer, also
     /// of one freed since the last call. Does nothing without guard_buffers().

@@ -107,7 +107,8 @@ class BadInput(ColliderCase):
             with self.subTest(words):
                 self.expect(kind, words, swept.run, POSES, **named)
         self.expect(ValueError, "next_vertices: no body is deformable", self.collider(motion="linear", contact_rule="none").run, next_vertices=[points])
-        self.expect(ValueError, "choose decision=exact or contact_rule=none", self.collider, motion="linear")
+        self.expect(ValueError, "choose decision=exact or contact_rule=none", self.collider, motion="linear", decision="recheck")
+        self.assertEqual(self.collider(motion="linear").settings["decision"], "exact")
         self.assertEqual(swept.digest(POSES, next_poses=POSES).count, self.collider(deformable=[1]).count(POSES), "goes on after bad input")
 
     def test_answers_that_were_not_stored(self):

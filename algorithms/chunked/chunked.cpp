@@ -28,12 +28,16 @@ const std::vector<Preset> all_presets{
     {"paper",
      "the paper's schedule (item, both children, threshold 10^7) with everything resident",
      {parameters::broad(Broad::device), schedule(Schedule::item), descent(Descent::both),
-      seed_threshold(10000000)}},
+      seed_threshold(10000000)},
+     {},
+     true},
     {"published",
      "the paper: k = 8, 8000-byte chunks, everything converted and transferred in every frame",
      {parameters::k(8), parameters::origin(Origin::world), parameters::residency(Residency::published),
       parameters::broad(Broad::sphere_boxes), schedule(Schedule::item), descent(Descent::both),
-      seed_threshold(10000000), parameters::group_size(64), root_test(false)}}};
+      seed_threshold(10000000), parameters::group_size(64), root_test(false)},
+     {},
+     true}};
 
 constexpr std::array all_counters{counters::bvtt_nodes, counters::seeds};
 

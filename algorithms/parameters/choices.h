@@ -131,7 +131,8 @@ enum class DecisionPrecision {
     recheck, ///< a certified filter in the cell's precision, then double for undecided pairs
     fp64,    ///< the certified decision in double for all pairs
     exact,   ///< as recheck, then exact arithmetic on the host for undecided pairs
-    none     ///< no pair is rejected, as in the contact kernel of the paper's code
+    none,    ///< no pair is rejected, as in the contact kernel of the paper's code
+    usual    ///< recheck, exact or fp32, chosen by motion and device before kernels are compiled
 };
 
 } // namespace tandem

@@ -169,6 +169,7 @@ struct Preset {
     std::string_view help;             ///< explanation for listings
     std::vector<Assignment> values;    ///< of the settings that it changes
     std::string_view former_name = {}; ///< before record schema 4; empty: the same
+    bool reproduces = false;           ///< a program of others, with its contact rule (Traversal::settings)
 
     /// `values` in the form that --set accepts.
     SettingTexts texts() const;

@@ -69,7 +69,8 @@ inline constexpr Setting<Origin> origin{
     {{"world", Origin::world}, {"auto", Origin::automatic}},
     "",
     "origin of coordinates on devices: auto: a point in the middle of the scene's first frame, and rigid "
-    "meshes far from their own origin are centred, so that a scene far from the world's origin is as accurate "
+    "meshes far from their own origin are centred, so that a scene far from the world's origin is as "
+    "accurate "
     "as one near it; world: the world's origin. auto is world where neither changes anything, and for "
     "placement=exact with precision=double"};
 
@@ -120,11 +121,14 @@ inline constexpr Setting<DecisionPrecision> decision{
      {"recheck", DecisionPrecision::recheck},
      {"fp64", DecisionPrecision::fp64},
      {"exact", DecisionPrecision::exact},
-     {"none", DecisionPrecision::none}},
+     {"none", DecisionPrecision::none},
+     {"usual", DecisionPrecision::usual}},
     "",
     "how to decide whether a pair collides: fp32: separating axes in the cell's precision; recheck: a "
     "certified filter, then double; fp64: double; exact: as recheck, then exact arithmetic on the host; "
-    "none: no pair is rejected, as in the paper's code"};
+    "none: no pair is rejected, as in the paper's code; usual: recheck, but exact with motion=linear, and "
+    "fp32 "
+    "on a device without double"};
 
 inline constexpr Setting<Broad> broad{
     "broad",

@@ -57,7 +57,8 @@ std::vector<Cell> candidates_of(const ColliderOptions& options, const DeviceGrou
     Request request{
         .algorithms = {std::string(automatic)}, .presets = {}, .devices = {}, .sets = {}, .may_choose = true};
     if (!options.preset.empty()) request.presets = {options.preset};
-    for (const auto& [name, value] : options.settings) request.sets.emplace_back(name, std::vector{value});
+    for (const auto& [name, value] : with_reliable_contacts(options.settings))
+        request.sets.emplace_back(name, std::vector{value});
     return std::move(plan(request, {&devices, 1}).front().candidates);
 }
 
@@ -161,9 +162,7 @@ void Collider::prepare(const ColliderOptions& options) {
         settings = candidates_.front().settings;
     } else {
         traversal = &tandem::algorithm(algorithm_);
-        const auto& chosen =
-            options.preset.empty() ? traversal->presets().front() : preset(*traversal, options.preset);
-        settings = resolve(traversal->parameters(), chosen.values, options.settings, traversal->name());
+        settings = traversal->settings(options.settings, options.preset);
     }
     precision_ = geometry_of(settings).precision;
     motion_ = settings[parameters::motion];

@@ -110,8 +110,8 @@ class Answer:
         return self._numbering.rows_of(self._core.meeting())
 
     def contacts(self) -> Contacts:
-        """Contacts of the pairs (see Contacts), in host memory. The contact rule determines which pairs have some: the default, "opposing", needs
-        boundary faces of both tetrahedra, so that a body wholly inside another has none (docs/user/python.md)."""
+        """Contacts of the pairs (see Contacts), in host memory. The contact rule determines which pairs have some: with the default, "sat", all that
+        meet; other rules need boundary faces (docs/user/python_answers.md)."""
         pairs, *columns = self._core.contacts()
         return Contacts(self._numbering.rows_of(pairs), *columns)
 
@@ -144,9 +144,10 @@ class Collider:
     stream: a CUDA stream of the device on which the collider enqueues its commands, in order with those of the application. Either
         cupy.cuda.get_current_stream() or torch.cuda.current_stream(), which the collider keeps alive, or the address of a stream that must
         outlive the collider. None: the collider makes its own stream.
-    preset, settings: the same as --preset and --set of the program, with its defaults (`tandem algorithms NAME` lists them): k=8,
-        precision="double", output="count". motion="linear" finds pairs between a frame and its successor (run()); it needs
-        decision="exact" or contact_rule="none".
+    preset, settings: the same as --preset and --set of the program (`tandem algorithms NAME` lists them): k=8, precision="double",
+        output="count". Defaults are the program's, but for contacts: contact_rule="sat" and decision="usual", which are to be relied on and cost
+        more. Presets that reproduce other programs ("paper", "published", "unc2010") keep their "opposing". motion="linear" finds pairs between a
+        frame and its successor (run()); contacts, if any, are those of the frame itself.
 
     Raises ValueError or TypeError for invalid arguments, tandem.DeviceError if a device fails; messages are one line. A UserWarning tells where
     nothing can meet, such as one body without self_collision. Calls release the interpreter's lock. Calls of one collider and of its answers
