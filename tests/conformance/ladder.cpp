@@ -100,7 +100,7 @@ private:
     void expect_right(const Traversal& traversal, const Preset& preset, const Scene& scene, const Mode& mode);
     const ReferenceAnswer& right_for(const Session& session, const Scene& scene, const FrameInput& input);
 
-    /// Of the current scene and frame: the presets share few geometries.
+    /// Those of the current scene and frame: the presets share few geometries.
     std::vector<std::tuple<Geometry, ContactSettings, ReferenceAnswer>> known_;
 };
 

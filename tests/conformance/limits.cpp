@@ -190,8 +190,8 @@ TEST_F(Limits, QueriesBeyondTheirBlocksAreReported) {
     const std::vector<std::uint32_t> pair{0, 1};
     const auto table = uploaded(bytes_of(pair));
     const auto kernel = compile("algorithms/leaf_query/body_query.cl", "query_leaves");
-    const auto enough = on.bodies.row(0).tetrahedron_count;
-    for (const std::uint32_t blocks : {enough, enough - 1}) {
+    const auto needed = on.bodies.row(0).tetrahedron_count;
+    for (const std::uint32_t blocks : {needed, needed - 1}) {
         words.assign(STATUS_WORDS, 0);
         words[STATUS_BODY_PAIRS] = 1;
         const auto status = uploaded(bytes_of(words));
@@ -207,8 +207,8 @@ TEST_F(Limits, QueriesBeyondTheirBlocksAreReported) {
                                                  static_cast<std::uint32_t>(expected),
                                                  status};
         const auto count = found_by(kernel, arguments, status);
-        EXPECT_EQ(count == expected, blocks == enough);
-        EXPECT_EQ(words[STATUS_EXCEEDED + EXCEEDED_QUERIES], blocks == enough ? 0u : 1u);
+        EXPECT_EQ(count == expected, blocks == needed);
+        EXPECT_EQ(words[STATUS_EXCEEDED + EXCEEDED_QUERIES], blocks == needed ? 0u : 1u);
     }
 }
 
