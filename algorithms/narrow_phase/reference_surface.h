@@ -246,8 +246,8 @@ private:
         const auto fraction = area(inside);
         const auto [axis, terms] = normal(solid, face);
         for (unsigned k = 0; k < 3; ++k) {
-            const auto share = arithmetic_.product(fraction, axis[k]);
-            surface.sum[k] = arithmetic_.sum(surface.sum[k], solid == 0 ? share : -share);
+            const auto addend = arithmetic_.product(fraction, axis[k]);
+            surface.sum[k] = arithmetic_.sum(surface.sum[k], solid == 0 ? addend : -addend);
         }
         const Real whole = length(values(axis));
         surface.total += whole * fraction.value;

@@ -85,14 +85,16 @@ void compare(const OraclePair& pair, Tally& tally) {
     tally.clipped += has_side ? 1 : 0;
     const std::array<std::array<double, 3>, 1> exact{surface.normal};
     const double angle = nearest_angle(exact, normal);
-    if (!has_side || (angle > 0.01 && std::abs(depth - truth->depth) < 16 * unit)) {
-        tally.left += has_side ? 1 : 0;
-        tally.depth = std::max(tally.depth, std::abs(depth - truth->depth) / unit);
-        return;
-    }
     const auto along =
         std::array{surface.normal[0] / side, surface.normal[1] / side, surface.normal[2] / side};
-    tally.depth = std::max(tally.depth, std::abs(depth - surface.extent(along)) / unit);
+    const double error = std::abs(depth - surface.extent(along)) / unit;
+    const double error_of_sat = std::abs(depth - truth->depth) / unit;
+    if (!has_side || (error_of_sat < 16 && (angle > 0.01 || error > 256))) {
+        tally.left += has_side ? 1 : 0;
+        tally.depth = std::max(tally.depth, error_of_sat);
+        return;
+    }
+    tally.depth = std::max(tally.depth, error);
     tally.angle = std::max(tally.angle, angle);
 }
 

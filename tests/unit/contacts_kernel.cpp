@@ -39,23 +39,6 @@ struct Expected {
     std::uint64_t total = 0, digest_a = 0, digest_b = 0;
 };
 
-/// The contacts of an outcome by pair, in ascending order of feature.
-template<class Real>
-std::vector<std::vector<Contact<Real>>> by_pair(const ContactOutcome<Real>& outcome, std::size_t rows,
-                                                std::size_t pairs) {
-    std::vector<std::vector<Contact<Real>>> result(pairs);
-    for (std::size_t i = 0; i < rows; ++i) {
-        const Real* v = &outcome.values[8 * i];
-        EXPECT_EQ(v[7], 0);
-        result.at(outcome.rows[i].pair)
-            .push_back({outcome.rows[i].feature, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}, v[6]});
-    }
-    for (auto& contacts : result)
-        std::sort(contacts.begin(), contacts.end(),
-                  [](const auto& a, const auto& b) { return a.feature < b.feature; });
-    return result;
-}
-
 template<class Real>
 std::vector<TetrahedronPair<Real>> random_pairs(std::size_t count) {
     PairMaker<Real> maker;

@@ -9,6 +9,7 @@
 #include "algorithms/sources.h"
 
 #include <algorithm>
+#include <gtest/gtest.h>
 #include <string>
 
 namespace tandem::unit_test {
@@ -33,6 +34,23 @@ struct ContactOutcome {
     std::uint64_t digest_a() const { return sums[0] | std::uint64_t{sums[1]} << 32; }
     std::uint64_t digest_b() const { return sums[2] | std::uint64_t{sums[3]} << 32; }
 };
+
+/// The contacts of an outcome by pair, in ascending order of feature.
+template<class Real>
+std::vector<std::vector<Contact<Real>>> by_pair(const ContactOutcome<Real>& outcome, std::size_t rows,
+                                                std::size_t pairs) {
+    std::vector<std::vector<Contact<Real>>> result(pairs);
+    for (std::size_t i = 0; i < rows; ++i) {
+        const Real* v = &outcome.values[8 * i];
+        EXPECT_EQ(v[7], 0);
+        result.at(outcome.rows[i].pair)
+            .push_back({outcome.rows[i].feature, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}, v[6]});
+    }
+    for (auto& contacts : result)
+        std::sort(contacts.begin(), contacts.end(),
+                  [](const auto& a, const auto& b) { return a.feature < b.feature; });
+    return result;
+}
 
 /// Pairs in the layout of the kernels: body 0 has all tetrahedra a, body 1 all b, both in world coordinates.
 template<class Real>
