@@ -134,7 +134,7 @@ class Choosing(Case):
             for name, value in given.items():
                 if name in candidate["settings"]:
                     self.assertEqual(candidate["settings"][name], value)
-        self.assertEqual(len(record["chosen"]["candidates"]), 6)  # leaf_query with both of its trees
+        self.assertEqual(len(record["chosen"]["candidates"]), 5)  # leaf_query with both of its trees
         self.assertEqual((record["settings"]["k"], record["settings"]["contact_rule"]), ("6", "none"))
 
     def test_failing_candidates_are_not_chosen(self):

@@ -64,9 +64,11 @@ class ColliderCase(Case):
         return {name: SMALL[name] for name in SMALL if name in {parameter["name"] for parameter in listed["parameters"]}}
 
     def dumps(self, *arguments):
-        """Pairs, pairs of contacts, and points, normals and depths from a run of the program over one frame."""
+        """Pairs, pairs of contacts, and points, normals and depths from a run of the program over one frame, with Python's default contacts."""
         paths = self.work / "pairs.csv", self.work / "contacts.csv"
-        status, text, errors = run_tandem("run", *arguments, "--no-check", "--no-count", "--dump-pairs", paths[0], "--dump-contacts", paths[1])
+        words = " ".join(str(argument) for argument in arguments)
+        contacts = [f"{name}={value}" for name, value in (("contact_rule", "sat"), ("decision", "usual")) if f"{name}=" not in words]
+        status, text, errors = run_tandem("run", *arguments, *(word for one in contacts for word in ("--set", one)), "--no-check", "--no-count", "--dump-pairs", paths[0], "--dump-contacts", paths[1])
         self.assertEqual((status, errors), (0, []), text)
         pairs, contacts = (numpy.array(list(csv.reader(path.read_text().splitlines()))[1:], dtype=float).reshape(-1, columns)
                            for path, columns in zip(paths, (5, 12)))

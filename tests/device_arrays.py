@@ -3,7 +3,7 @@
 """device_arrays.py PROGRAM SOURCE: GPU arrays as input of tandem.Collider, on the stub of CUDA's driver
 (LD_LIBRARY_PATH and TANDEM_NVRTC name it). Tests the stream passed to the array's library, kernels that get the
 original addresses, release of borrowed arrays, and errors. Kernels of the stub find no pairs; tests/conformance
-checks their results."""
+checks their results. With origin=auto the host would read the first frame, and the stub copies from no array of others."""
 import ctypes
 import gc
 import pathlib
@@ -153,7 +153,7 @@ class Arrays(Case):
         cls.parts = [tuple(map(numpy.array, bar(4, (0, 0, 0)))), tuple(map(numpy.array, bar(3, (0.5, 0.25, 0.375))))]
 
     def collider(self, device="cuda:0", **options):
-        return tandem.Collider(self.parts, device=device, **{"pair_capacity": 1024, "contact_capacity": 1024, **options})
+        return tandem.Collider(self.parts, device=device, **{"pair_capacity": 1024, "contact_capacity": 1024, "origin": "world", **options})
 
     def expect_read(self, collider, run, *addresses):
         """Checks that the frame's kernels get these addresses and that nothing is copied to or from them. Counters

@@ -186,7 +186,7 @@ class Flawed(Case):
         near, far = gmsh(self.work / "near.msh", points, tets), 2.0**33
         pose = f"{far} 0 0 1 0 0 0"
         cell = ("--mesh", near, "--mesh", near, "--pose", pose, "--pose", pose)
-        record, lines = self.run_cell(*cell)
+        record, lines = self.run_cell(*cell, "--set", "origin=world")
         self.assertEqual(record["error"]["flattened"], 2 * len(tets))
         self.assertEqual(lines, [f"  single precision cannot resolve mesh near of body 0: {len(tets)} of {len(tets)} tetrahedra become flat; use precision=double or origin=auto"])
         for words in (("--set", "precision=double"), ("--set", "origin=auto")):
@@ -199,7 +199,7 @@ class Flawed(Case):
         scene = self.work / "deforming.json"
         scene.write_text(json.dumps({"frames": 2, "meshes": {"a": {"file": "near.msh"}},
                                      "bodies": [{"mesh": "a", "position": [far, 0, 0], "fixed": True}, {"mesh": "a", "series": ["moved0.msh", "moved1.msh"]}]}))
-        self.assertEqual(self.run_cell(scene)[0]["error"]["flattened"], 2 * len(tets))
+        self.assertEqual(self.run_cell(scene, "--set", "origin=world")[0]["error"]["flattened"], 2 * len(tets))
 
     def test_files_with_numbers_that_are_not_finite(self):
         """Refused by their readers, whatever --degenerate is, and its help and page say so."""

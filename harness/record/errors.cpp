@@ -221,17 +221,24 @@ const Fields<DeepContact>& deep_contact_fields() {
     return fields;
 }
 
+auto truth_type() {
+    return nullable(truth_fields().type(
+        "against the exact truth, every pair of every frame decided, by the vertices that setting "
+        "placement names (rounded: the cell's, moved in its precision; exact: the scene's, moved "
+        "without rounding; decisions and contacts were judged by the cell's before there was a "
+        "setting origin); null when not asked for; records from before it have none"));
+}
+
 const Fields<CellRecord>& one_error() {
     static const Fields<CellRecord> fields{
         {"degenerate_pairs", count(),
          "candidate pairs without contacts because a tetrahedron has no certain volume, over all frames",
          [](auto& r) { return r.m.degenerate; }},
         {"deep_contact",
-         nullable(deep_contact_fields().type(
-             "the deepest contact of the first frame with contacts that are deeper than the smaller body is "
-             "long, with a rule that needs boundary faces of both tetrahedra; null: there is none, or "
-             "answers "
-             "were not checked; records from before it have none")),
+         nullable(deep_contact_fields().type("deepest contact of the first frame with contacts deeper than "
+                                             "the smaller body is long, with a rule "
+                                             "that needs boundary faces of both; null: none, or unchecked; "
+                                             "records from before it have none")),
          "",
          [](auto& r) { return r.m.deep_contact ? deep_contact_fields().write(*r.m.deep_contact) : Json(); },
          {.optional = true}},
@@ -249,13 +256,7 @@ const Fields<CellRecord>& one_error() {
          [](auto& r) { return input_fields().write(r.range.flaws()); },
          {.optional = true}},
         {"truth",
-         nullable(truth_fields().type("against the exact truth, every pair of every frame decided, by the "
-                                      "vertices that setting placement "
-                                      "names (rounded: the cell's, moved in its precision; exact: the "
-                                      "scene's, moved without rounding; "
-                                      "decisions and contacts were judged by the cell's before there was a "
-                                      "setting origin); null when not "
-                                      "asked for; records from before it have none")),
+         truth_type(),
          "",
          [](auto& r) { return r.m.errors ? truth_fields().write(*r.m.errors) : Json(); },
          {.optional = true}},

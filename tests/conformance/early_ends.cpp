@@ -47,7 +47,7 @@ void EarlyEnds::end_everywhere(const Traversal& traversal, const SettingTexts& g
     ASSERT_GT(right.count, 0u);
     constexpr std::size_t all = 10000;
     const auto launches = run_until(*session, frame, all);
-    EXPECT_GT(launches, 3u);
+    EXPECT_GE(launches, 3u);
     for (std::size_t last = 1; last <= launches; ++last) {
         EXPECT_EQ(run_until(*session, frame, last), last);
         const auto result = session->run(frame);

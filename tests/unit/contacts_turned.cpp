@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 #include <set>
 
-namespace tandem::unit_test::turned {
+namespace tandem::unit_test::contacts_turned {
 namespace {
 
 using Vector = Eigen::Vector3d;
@@ -255,4 +255,4 @@ INSTANTIATE_TEST_SUITE_P(Rules, ContactsTurned, testing::ValuesIn(support::conta
                          [](const auto& test) { return test.param.name; });
 
 } // namespace
-} // namespace tandem::unit_test::turned
+} // namespace tandem::unit_test::contacts_turned

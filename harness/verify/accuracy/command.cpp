@@ -48,7 +48,7 @@ std::vector<Axis> axes_of_bounds(const Traversal& traversal) {
 /// Settings that affect contacts: precision, decision, rule.
 std::vector<Axis> axes_of_contacts(const Traversal& traversal) {
     return {{"precision", choices(traversal, "precision")},
-            {"decision", choices(traversal, "decision")},
+            {"decision", choices(traversal, "decision", "usual")}, // one of the others
             {"contact_rule", choices(traversal, "contact_rule", "none")}};
 }
 
