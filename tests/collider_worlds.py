@@ -10,6 +10,7 @@ import numpy
 
 from collider_case import DEVICES, POSES, ColliderCase, tandem
 from collider_meeting import matrices
+from program import LONG
 
 
 class Worlds(ColliderCase):
@@ -50,6 +51,24 @@ class Worlds(ColliderCase):
                     turned = numpy.stack([matrices(rows) for rows in poses])
                     self.assertEqual(together.count(turned), sum(alone.count(rows) for rows in turned))
                     self.assertEqual(together.count(), worlds * alone.count())
+
+    def test_a_ladder_of_worlds(self):
+        """Numbers of worlds at which tiles of bodies and groups turn, with pairs of one body and with filters, by every algorithm: each world has
+        the pairs of one alone."""
+        poses = self.poses(1, 3)
+        sizes = sorted({size for power in (1, 2, 4, 8, 16, 32, 64, 128, *((256, 512, 1000) if LONG else ()))
+                        for size in (power - 1, power, power + 1, round(1.2 * power), round(1.44 * power), round(1.7 * power))} - {0})
+        for named in ({"self_collision": True}, {"body_groups": [[0], [1], [0]], "meets": [[1], None, [1]]}):
+            meshes = [self.meshes[1], self.meshes[0], self.meshes[1]]
+            alone = self.collider(meshes, contact_rule="none", **named).run(poses[0]).pairs()
+            self.assertGreater(len(alone), 10)
+            for number, worlds in enumerate(sizes):
+                algorithm = ("tiled", "chunked", "gproximity", "leaf_query")[number % 4]
+                for name in ("tiled", "chunked", "gproximity", "leaf_query") if LONG else (algorithm,):
+                    with self.subTest(algorithm=name, worlds=worlds, **named):
+                        rows = self.collider(meshes, algorithm=name, worlds=worlds, contact_rule="none", **named).run(numpy.repeat(poses, worlds, axis=0)).pairs()
+                        right = numpy.column_stack((numpy.repeat(numpy.arange(worlds), len(alone)), numpy.tile(alone, (worlds, 1))))
+                        self.assertTrue(numpy.array_equal(rows, right))
 
     def test_deformable_bodies_and_updates(self):
         for device in DEVICES:
