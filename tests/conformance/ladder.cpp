@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <fmt/format.h>
+#include <functional>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -89,8 +90,9 @@ const std::vector<Mode> modes{{"off", "none"},  {"on", "none"},       {"off", "l
 
 class Ladder : public testing::TestWithParam<std::string> {
 protected:
-    /// Runs `scene` by all presets, or by every `step`-th from number `first` on.
-    void expect_right(const Scene& scene, const Mode& mode, std::size_t first, std::size_t step);
+    /// Whether to run a preset: number of the algorithm, of the preset in it, and of the preset in all.
+    using Chosen = std::function<bool(std::size_t algorithm, std::size_t preset, std::size_t number)>;
+    void expect_right(const Scene& scene, const Mode& mode, const Chosen& chosen);
 
     Device& on = device(GetParam());
     std::uint64_t cells = 0, frames = 0, pairs = 0;
@@ -144,19 +146,22 @@ void Ladder::expect_right(const Traversal& traversal, const Preset& preset, cons
     pairs += result.count;
 }
 
-void Ladder::expect_right(const Scene& scene, const Mode& mode, std::size_t first, std::size_t step) {
+void Ladder::expect_right(const Scene& scene, const Mode& mode, const Chosen& chosen) {
     SCOPED_TRACE(fmt::format("{} bodies of {} tetrahedra, self={} motion={} filtered={}", scene.bodies.size(),
                              scene.meshes.front().tetrahedra.size(), mode.self, mode.motion, mode.filtered));
     known_.clear();
     ++frames;
     std::size_t number = 0;
-    for (const auto* traversal : algorithms())
-        for (const auto& preset : traversal->presets())
-            if (number++ % step == first % step) expect_right(*traversal, preset, scene, mode);
+    for (std::size_t i = 0; i < algorithms().size(); ++i) {
+        const auto presets = algorithms()[i]->presets();
+        for (std::size_t j = 0; j < presets.size(); ++j, ++number)
+            if (chosen(i, j, number)) expect_right(*algorithms()[i], presets[j], scene, mode);
+    }
 }
 
-/// The short form has every size once, with pairs of one body for every second, and a sixth of the presets
-/// in turn; on devices other than the host a sixth of these.
+/// In short form every second size has pairs of one body, by the first preset of every second algorithm, and
+/// the others a mode and a sixth of all presets in turn. Devices other than the host have a sixth of the
+/// sizes.
 TEST_P(Ladder, EverySizeHasThePairsOfASweep) {
     struct Step {
         std::uint32_t bodies, count;
@@ -166,12 +171,16 @@ TEST_P(Ladder, EverySizeHasThePairsOfASweep) {
     for (const auto bodies : rungs(long_form() ? 3000 : 400))
         steps.push_back({bodies, bodies % 4 == 0 ? 40u : 6u});
     const std::size_t every = long_form() || GetParam() == "host" ? 1 : 6;
-    for (std::size_t i = 0; i < steps.size(); i += every)
+    for (std::size_t i = 0, turn = 0; i < steps.size(); i += every, ++turn)
         for (std::size_t mode = 0; mode < modes.size(); ++mode) {
-            if (!long_form() && mode != (i % 2 == 0 ? 1 : i / 2 % modes.size())) continue;
+            const bool is_self = turn % 2 == 0;
+            if (!long_form() && mode != (is_self ? 1 : turn / 2 % modes.size())) continue;
             const auto [bodies, count] = steps[i];
-            expect_right(lattice(bodies, count, modes[mode].filtered), modes[mode], i / every,
-                         long_form() ? 1 : 6);
+            const auto chosen = [&](std::size_t algorithm, std::size_t preset, std::size_t number) {
+                if (long_form()) return true;
+                return is_self ? preset == 0 && algorithm % 2 == turn / 2 % 2 : number % 6 == turn / 2 % 6;
+            };
+            expect_right(lattice(bodies, count, modes[mode].filtered), modes[mode], chosen);
             if (HasFailure()) return;
         }
     EXPECT_GT(pairs, 100000u);
