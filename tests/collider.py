@@ -235,6 +235,13 @@ class Auto(ColliderCase):
         self.assertEqual(collider.digest(POSES), self.collider(precision="double").digest(POSES))
         print(f"\n  auto: {trials[0]} of {len(trials)}", end="", file=sys.stderr)
 
+    def test_presets_that_reproduce_other_programs_keep_their_contacts(self):
+        for algorithm, preset, rule in (("chunked", "paper", "opposing"), ("gproximity", "unc2010", "opposing"), ("chunked", "grouped", "sat")):
+            self.assertEqual(self.collider(algorithm=algorithm, preset=preset).settings["contact_rule"], rule)
+            chosen = tandem.Collider(self.meshes, "auto", preset=preset)
+            chosen.tune(POSES, seconds=0.01)
+            self.assertEqual((chosen.algorithm, chosen.settings["contact_rule"]), (algorithm, rule))
+
     def test_compares_k_where_it_changes_no_contact(self):
         given = {"output": "contacts", "decision": "exact"}
         collider = tandem.Collider(self.meshes, "auto", pair_capacity=65536, contact_capacity=65536, queue_bytes=65536, **given)

@@ -52,13 +52,23 @@ Scene one_world(const Scene& scene, std::size_t worlds) {
     return first;
 }
 
-/// Candidates of algorithm auto, by the rules of `tandem run`.
+/// Whether a preset of that name reproduces a program of others, which has its own contacts.
+bool reproduces(const std::string& name) {
+    return std::ranges::any_of(algorithms(), [&](const Traversal* traversal) {
+        return std::ranges::any_of(traversal->presets(), [&](const Preset& preset) {
+            return preset.name == name && preset.reproduces;
+        });
+    });
+}
+
+/// Candidates of algorithm auto, by the rules of `tandem run` but for the default contacts.
 std::vector<Cell> candidates_of(const ColliderOptions& options, const DeviceGroup& devices) {
     Request request{
         .algorithms = {std::string(automatic)}, .presets = {}, .devices = {}, .sets = {}, .may_choose = true};
     if (!options.preset.empty()) request.presets = {options.preset};
-    for (const auto& [name, value] : with_reliable_contacts(options.settings))
-        request.sets.emplace_back(name, std::vector{value});
+    const auto settings =
+        reproduces(options.preset) ? options.settings : with_reliable_contacts(options.settings);
+    for (const auto& [name, value] : settings) request.sets.emplace_back(name, std::vector{value});
     return std::move(plan(request, {&devices, 1}).front().candidates);
 }
 
