@@ -1,7 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""kernel_resources.py PAGE.md FILE.s ...: writes a page with registers, spills and memory of kernels, from the metadata of
-AMD machine code. Files are named KERNEL.GPU.PRECISION.s, as scripts/compile_kernels --table makes them."""
+"""kernel_resources.py PAGE.md FILE.s ...: writes a page with registers, spills and memory of kernels, from
+the metadata of AMD machine code. Files are named KERNEL.GPU.PRECISION.s, as scripts/compile_kernels --table
+makes them."""
+
 import pathlib
 import re
 import sys
@@ -20,17 +22,34 @@ def entries(path):
     """By entry: numbers of the metadata of one assembly file."""
     text = path.read_text()
     _, _, metadata = text.partition("amdhsa.kernels:")
-    for block in re.split(r"\n  - (?=\.)", metadata)[1:]:  # a GPU with accumulation registers begins with their number
+    for block in re.split(r"\n  - (?=\.)", metadata)[
+        1:
+    ]:  # a GPU with accumulation registers begins with their number
         values = dict(re.findall(r"^    \.(\w+): +(\S+)$", block, re.MULTILINE))
-        yield values["name"], {name: int(values[name]) for name in (
-            "vgpr_count", "sgpr_count", "group_segment_fixed_size", "vgpr_spill_count", "sgpr_spill_count", "private_segment_fixed_size")}
+        yield (
+            values["name"],
+            {
+                name: int(values[name])
+                for name in (
+                    "vgpr_count",
+                    "sgpr_count",
+                    "group_segment_fixed_size",
+                    "vgpr_spill_count",
+                    "sgpr_spill_count",
+                    "private_segment_fixed_size",
+                )
+            },
+        )
 
 
 def cell(numbers):
     spills = numbers["vgpr_spill_count"] + numbers["sgpr_spill_count"]
     private = numbers["private_segment_fixed_size"]
-    return (f"{numbers['vgpr_count']} / {numbers['sgpr_count']} / {numbers['group_segment_fixed_size']}"
-            + (f", {spills} spilled" if spills else "") + (f", {private} private" if private else ""))
+    return (
+        f"{numbers['vgpr_count']} / {numbers['sgpr_count']} / {numbers['group_segment_fixed_size']}"
+        + (f", {spills} spilled" if spills else "")
+        + (f", {private} private" if private else "")
+    )
 
 
 def main(page, paths):
@@ -49,7 +68,10 @@ def main(page, paths):
         if missing := gpus - set(cells):
             sys.exit(f"kernel_resources: {kernel}: {name} has no metadata for {', '.join(sorted(missing))}")
     lines = [HEAD, f"| kernel | {' | '.join(columns)} |", "|---|" + "---|" * len(columns)]
-    lines += [f"| `{kernel}`: `{name}` | {' | '.join(cells[gpu] for gpu in columns)} |" for (kernel, name), cells in sorted(rows.items())]
+    lines += [
+        f"| `{kernel}`: `{name}` | {' | '.join(cells[gpu] for gpu in columns)} |"
+        for (kernel, name), cells in sorted(rows.items())
+    ]
     pathlib.Path(page).write_text("\n".join(lines) + "\n")
     print(f"kernel_resources: {len(rows)} entries for {', '.join(columns)} in {page}")
 

@@ -1,6 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""artefact.py PROGRAM SOURCE: scripts/artefact on made-up pages, and the commands of docs/artefact.md. scripts/test --full runs them."""
+"""artefact.py PROGRAM SOURCE: scripts/artefact on made-up pages, and the commands of docs/artefact.md.
+scripts/test --full runs them."""
+
 import os
 import re
 import subprocess
@@ -16,7 +18,9 @@ class Artefact(ScriptCase):
     def run_page(self, text):
         page = self.work / "page.md"
         page.write_text(text)
-        done = subprocess.run([SOURCE / "scripts/artefact", page], capture_output=True, text=True, check=False)
+        done = subprocess.run(
+            [SOURCE / "scripts/artefact", page], capture_output=True, text=True, check=False
+        )
         return done.returncode, done.stdout, done.stderr
 
     def test_commands_run_in_order_and_are_judged(self):
@@ -24,7 +28,10 @@ class Artefact(ScriptCase):
         text = f"# Page\n\n    echo one > {mark} && echo written\n\nText.\n\n    exit 3\n    grep -q one {mark}\n"
         code, output, _ = self.run_page(text)
         self.assertEqual(code, 1)
-        self.assertEqual(re.findall(r"^ *(ok|failed \(3\)) +[\d.]+ s  (\w+)", output, re.M), [("ok", "echo"), ("failed (3)", "exit"), ("ok", "grep")])
+        self.assertEqual(
+            re.findall(r"^ *(ok|failed \(3\)) +[\d.]+ s  (\w+)", output, re.M),
+            [("ok", "echo"), ("failed (3)", "exit"), ("ok", "grep")],
+        )
         self.assertIn("\nwritten\n", output)
         self.assertEqual(self.run_page(text.replace("exit 3", "true"))[0], 0)
         for bad in (("x", "y"), ("--fly",), (self.work / "absent.md",), ("--list", "x", "y")):
@@ -39,7 +46,9 @@ class Artefact(ScriptCase):
         for command in commands:
             first, *rest = command.removeprefix("bash ").removeprefix("PYTHONPATH=python ").split()
             if first == "build/tandem":
-                status, _, errors = tandem(*rest, "--dry-run") if rest[0] == "run" else tandem(rest[0], "--help")
+                status, _, errors = (
+                    tandem(*rest, "--dry-run") if rest[0] == "run" else tandem(rest[0], "--help")
+                )
                 self.assertEqual((status, errors), (0, []), command)
             elif "/" in first:
                 self.assertTrue(os.access(SOURCE / first, os.X_OK), command)

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""bad_input.py PROGRAM SOURCE: bad meshes, scenes, outputs and devices, and failures of devices: one line names the error
-and what to do."""
+"""bad_input.py PROGRAM SOURCE: bad meshes, scenes, outputs and devices, and failures of devices: one line
+names the error and what to do."""
+
 import json
 import re
 import subprocess
@@ -23,7 +24,13 @@ class BadInput(Case):
             "range.msh": gmsh(self.work / "range.msh", points, far).read_text(),
             "hexa.msh": gmsh(self.work / "hexa.msh", points, [(0, 1, 3, 2, 4, 5, 7, 6)], 5).read_text(),
         }
-        reasons = {"short.msh": "", "nan.msh": "nan", "count.msh": "999999999999", "range.msh": "5001", "hexa.msh": "hexahedr"}
+        reasons = {
+            "short.msh": "",
+            "nan.msh": "nan",
+            "count.msh": "999999999999",
+            "range.msh": "5001",
+            "hexa.msh": "hexahedr",
+        }
         for name, text in texts.items():
             self.assertNotEqual(text, whole)
             path = self.work / name
@@ -35,7 +42,12 @@ class BadInput(Case):
         noise = self.work / "noise.msh"
         noise.write_text("this is no mesh\n")
         surface = gmsh(self.work / "surface.msh", points, [])
-        for path, reason in ((noise, ""), (surface, "no tetrahedra"), (self.work / "missing.msh", ""), (self.work, "folder")):
+        for path, reason in (
+            (noise, ""),
+            (surface, "no tetrahedra"),
+            (self.work / "missing.msh", ""),
+            (self.work, "folder"),
+        ):
             self.bad([str(path), reason], "run", "--mesh", path)
 
     def test_bad_scenes(self):
@@ -48,10 +60,21 @@ class BadInput(Case):
         self.bad("empty.json", "run", empty)
         self.bad("the nearest is 'plates'", "run", "plate")
         self.bad("the nearest is 'density'", "run", "pile:densty=1")
-        for value in ("pile:density=-1", "pile:density=nan", "pile:bodies=0", "pile:bodies=2.5", "plates:count=99999999999999999"):
+        for value in (
+            "pile:density=-1",
+            "pile:density=nan",
+            "pile:bodies=0",
+            "pile:bodies=2.5",
+            "plates:count=99999999999999999",
+        ):
             self.bad("impossible", "run", value)
         # More than any machine's memory: nothing is generated.
-        for value in ("pile:bodies=10000000,refine=4", "plates:count=100000,refine=4", "funnel:bodies=1000000,refine=3", "glasses:bodies=1000000,refine=3"):
+        for value in (
+            "pile:bodies=10000000,refine=4",
+            "plates:count=100000,refine=4",
+            "funnel:bodies=1000000,refine=3",
+            "glasses:bodies=1000000,refine=3",
+        ):
             self.bad(["bodies of mesh", "take at least"], "run", value)
         self.bad("no value", "run", "pile:density")
         self.bad("the nearest is 'jack'", "run", "pile:mesh=jak")
@@ -81,7 +104,9 @@ class BadInput(Case):
 
     def test_unwritable_output_is_detected_first(self):
         for option in ("--out", "--dump-pairs", "--dump-contacts"):
-            out = self.bad("cannot be written", "run", "plates", "--frames", "0", option, self.work / "no/such/file")
+            out = self.bad(
+                "cannot be written", "run", "plates", "--frames", "0", option, self.work / "no/such/file"
+            )
             self.assertNotIn("traverse", out)
 
     def test_too_little_memory(self):
@@ -89,23 +114,49 @@ class BadInput(Case):
         records stay."""
         for device in ("host", "opencl:0"):
             out = self.work / f"memory{device}.jsonl"
-            arguments = ("run", "--mesh", self.good, "--mesh", self.good, "--algorithm", "gproximity", "--device", device,
-                         "--repeat", 1, "--out", out, "--set", "groups=64")
+            arguments = (
+                "run",
+                "--mesh",
+                self.good,
+                "--mesh",
+                self.good,
+                "--algorithm",
+                "gproximity",
+                "--device",
+                device,
+                "--repeat",
+                1,
+                "--out",
+                out,
+                "--set",
+                "groups=64",
+            )
             self.assertEqual(tandem(*arguments)[0], 0)
-            self.bad("of 5726623061 items and 2147483648 is the most; lower it, or raise groups", *arguments[:-1], "groups=16",
-                     "--set", "queue_bytes=1099511627776")
+            self.bad(
+                "of 5726623061 items and 2147483648 is the most; lower it, or raise groups",
+                *arguments[:-1],
+                "groups=16",
+                "--set",
+                "queue_bytes=1099511627776",
+            )
             before = out.read_bytes()
-            # The array of the release has a quarter of the memory; with a limit of memory it is as large as fits.
+            # The array of the release has a quarter of the memory; with a limit of memory it is as large as
+            # fits.
             whole = (*arguments[:-2], "--set", "queue_bytes=device")
             status, _, errors = tandem(*whole, address_space=2 << 30)
             self.assertEqual((status, len(errors)), (2, 1), errors)
-            self.assertRegex(errors[0], r"setting queue_bytes=device stands for \d+\.\d\d GB on .* do not fit; give --set queue_bytes=4194304, or --memory")
+            self.assertRegex(
+                errors[0],
+                r"setting queue_bytes=device stands for \d+\.\d\d GB on .* do not fit; give --set queue_bytes=4194304, or --memory",
+            )
             self.assertTrue(out.read_bytes().startswith(before))
             self.bad("queues", *arguments, "--set", "queue_bytes=67108864,1099511627776", code=3)
             self.assertTrue(out.read_bytes().startswith(before))
             records = self.records(out)
             self.assertEqual([r["status"] for r in records], ["ok", "ok", "failed"])
-            needed, there_is = map(int, re.search(r"needs (\d+) bytes.* (\d+)$", records[2]["failure"]).groups())
+            needed, there_is = map(
+                int, re.search(r"needs (\d+) bytes.* (\d+)$", records[2]["failure"]).groups()
+            )
             self.assertGreater(needed, 10**12)
             self.assertLess(there_is, needed)
             self.assertGreater(there_is, 0)
@@ -115,7 +166,9 @@ class BadInput(Case):
         status, out, errors = tandem("devices", environment=nothing)
         self.assertEqual((status, errors), (0, []))
         self.assertIn("opencl: no platform", out)
-        reasons = {e["backend"]: e["reason"] for e in json.loads(tandem("devices", "--json", environment=nothing)[1])}
+        reasons = {
+            e["backend"]: e["reason"] for e in json.loads(tandem("devices", "--json", environment=nothing)[1])
+        }
         self.assertIn("no platform", reasons["opencl"])
         self.bad("opencl: no platform", "run", "plates", "--device", "opencl:0", environment=nothing)
         self.bad("opencl: no platform", "run", "plates", environment=nothing)
@@ -128,12 +181,25 @@ class Regressions(Case):
     """Regression tests of fixed errors."""
 
     def cell(self, *arguments, **options):
-        return tandem("run", "--mesh", self.good, "--mesh", self.good, "--device", "host", "--algorithm", "chunked",
-                      *arguments, **options)
+        return tandem(
+            "run",
+            "--mesh",
+            self.good,
+            "--mesh",
+            self.good,
+            "--device",
+            "host",
+            "--algorithm",
+            "chunked",
+            *arguments,
+            **options,
+        )
 
     def test_check_takes_one_algorithm(self):
         for name in ("chunked", "gproximity"):
-            status, out, errors = tandem("check", "plates", "--frames", "0", "--algorithm", name, "--device", "host")
+            status, out, errors = tandem(
+                "check", "plates", "--frames", "0", "--algorithm", name, "--device", "host"
+            )
             self.assertEqual((status, errors), (0, []), out)
 
     def test_coordinates_beyond_single_precision(self):
@@ -144,8 +210,25 @@ class Regressions(Case):
         counts = []
         for precision in ("double", "float"):
             out = self.work / f"{precision}.jsonl"
-            status = tandem("run", "--mesh", long, "--mesh", other, "--device", "host", "--algorithm", "chunked", "--repeat", 1,
-                            "--set", "k=6", "--set", f"precision={precision}", "--out", out)[0]
+            status = tandem(
+                "run",
+                "--mesh",
+                long,
+                "--mesh",
+                other,
+                "--device",
+                "host",
+                "--algorithm",
+                "chunked",
+                "--repeat",
+                1,
+                "--set",
+                "k=6",
+                "--set",
+                f"precision={precision}",
+                "--out",
+                out,
+            )[0]
             counts.append(self.records(out)[0]["work"]["candidate_pairs"] if status == 0 else status)
         self.assertIn(counts[1], (counts[0], 2))
 
@@ -160,24 +243,62 @@ class Regressions(Case):
         self.assertFalse(out.exists() and out.read_text())
 
     def test_dump_after_a_failed_cell_keeps_the_table(self):
-        status, text, errors = tandem("run", "--mesh", self.good, "--mesh", self.good, "--algorithm", "gproximity", "--device",
-                                      "host", "--repeat", 1, "--set", "queue_bytes=1099511627776,67108864", "--dump-pairs",
-                                      self.work / "failed.csv")
+        status, text, errors = tandem(
+            "run",
+            "--mesh",
+            self.good,
+            "--mesh",
+            self.good,
+            "--algorithm",
+            "gproximity",
+            "--device",
+            "host",
+            "--repeat",
+            1,
+            "--set",
+            "queue_bytes=1099511627776,67108864",
+            "--dump-pairs",
+            self.work / "failed.csv",
+        )
         self.assertEqual((status, len(errors), text.count(": right: ")), (3, 1, 1))
-        self.assertGreater(len((self.work / "failed.csv").read_text().splitlines()), 100, "of the cell that finished")
+        self.assertGreater(
+            len((self.work / "failed.csv").read_text().splitlines()), 100, "of the cell that finished"
+        )
 
     def test_a_dump_is_complete_or_absent(self):
-        """A file with only a header would read as an answer without pairs; a file of the user stays until it is replaced."""
+        """A file with only a header would read as an answer without pairs; a file of the user stays until it
+        is replaced."""
         pairs, contacts, out = self.work / "pairs.csv", self.work / "contacts.csv", self.work / "once.jsonl"
         contacts.write_text("mine\n")
         (self.work / "link.csv").symlink_to(contacts)
-        failing = ("run", "--mesh", self.good, "--mesh", self.good, "--algorithm", "gproximity", "--device", "host", "--repeat", 1,
-                   "--set", "queue_bytes=1099511627776", "--dump-pairs")
+        failing = (
+            "run",
+            "--mesh",
+            self.good,
+            "--mesh",
+            self.good,
+            "--algorithm",
+            "gproximity",
+            "--device",
+            "host",
+            "--repeat",
+            1,
+            "--set",
+            "queue_bytes=1099511627776",
+            "--dump-pairs",
+        )
         self.bad("queues", *failing, pairs, "--dump-contacts", self.work / "link.csv", code=3)
         self.assertEqual((list(self.work.glob("pairs.csv*")), contacts.read_text()), ([], "mine\n"))
-        piped = subprocess.run([str(PROGRAM), *map(str, failing), "/dev/stderr"], capture_output=True, text=True)
+        piped = subprocess.run(
+            [str(PROGRAM), *map(str, failing), "/dev/stderr"], capture_output=True, text=True
+        )
         self.assertNotIn("body_a", piped.stderr)
-        self.assertEqual(self.cell("--repeat", 1, "--out", out, "--dump-pairs", pairs, "--dump-contacts", self.work / "link.csv")[0], 0)
+        self.assertEqual(
+            self.cell(
+                "--repeat", 1, "--out", out, "--dump-pairs", pairs, "--dump-contacts", self.work / "link.csv"
+            )[0],
+            0,
+        )
         self.assertEqual(pairs.read_text().partition("\n")[0], "frame,body_a,tet_a,body_b,tet_b")
         self.assertGreater(len(contacts.read_text().splitlines()), 10, "a link is followed")
         pairs.unlink()
@@ -185,11 +306,33 @@ class Regressions(Case):
         self.assertEqual((status, pairs.exists()), (0, False))
         self.assertIn("no dump is written: run again without --resume", text)
         (self.work / "here").symlink_to(self.work)
-        self.bad("named for two outputs", "run", "plates", "--dump-pairs", self.work / "new.csv", "--dump-contacts", self.work / "here/new.csv")
+        self.bad(
+            "named for two outputs",
+            "run",
+            "plates",
+            "--dump-pairs",
+            self.work / "new.csv",
+            "--dump-contacts",
+            self.work / "here/new.csv",
+        )
 
     def test_a_failure_is_one_line_without_an_empty_one(self):
-        done = subprocess.run([str(PROGRAM), "run", "--mesh", self.good, "--algorithm", "gproximity", "--device", "host", "--set",
-                               "queue_bytes=1099511627776"], capture_output=True, text=True)
+        done = subprocess.run(
+            [
+                str(PROGRAM),
+                "run",
+                "--mesh",
+                self.good,
+                "--algorithm",
+                "gproximity",
+                "--device",
+                "host",
+                "--set",
+                "queue_bytes=1099511627776",
+            ],
+            capture_output=True,
+            text=True,
+        )
         self.assertTrue(done.stderr.startswith("tandem: "), done.stderr)
 
     def test_records_can_be_written_to_a_pipe(self):
@@ -212,10 +355,14 @@ class Regressions(Case):
 
     def test_poses_without_meshes_are_refused(self):
         pose = ("--pose", "1 0 0 1 0 0 0")
-        self.assertEqual(tandem("run", "pile:bodies=2,frames=1", "--device", "host", "--repeat", 1, *pose)[0], 2)
+        self.assertEqual(
+            tandem("run", "pile:bodies=2,frames=1", "--device", "host", "--repeat", 1, *pose)[0], 2
+        )
 
     def test_unknown_devices_beside_all_are_refused(self):
-        self.assertEqual(tandem("run", "pile:bodies=2,frames=1", "--repeat", 1, "--device", "all,nosuch")[0], 2)
+        self.assertEqual(
+            tandem("run", "pile:bodies=2,frames=1", "--repeat", 1, "--device", "all,nosuch")[0], 2
+        )
 
     def test_a_folder_is_no_scene_description(self):
         folder = self.work / "folder.json"

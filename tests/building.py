@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""building.py PROGRAM SOURCE: several processes and ranks compile the same programs at once, with an empty cache of PoCL. OPENCL_SHIM: the
-library that makes builds fail."""
+"""building.py PROGRAM SOURCE: several processes and ranks compile the same programs at once, with an empty
+cache of PoCL. OPENCL_SHIM: the library that makes builds fail."""
+
 import os
 import pathlib
 import shutil
@@ -18,12 +19,36 @@ REPEATS = 5 if LONG else 1
 
 class Building(Case):
     def setUp(self):
-        self.words = [str(PROGRAM), "run", "--mesh", str(self.good), "--mesh", str(self.good), "--device", "opencl:0", "--algorithm", "tiled", "--repeat", "1",
-                      "--set", "contact_rule=sat", "--set", "decision=recheck", "--set", "group_size=33", "--quiet"]
+        self.words = [
+            str(PROGRAM),
+            "run",
+            "--mesh",
+            str(self.good),
+            "--mesh",
+            str(self.good),
+            "--device",
+            "opencl:0",
+            "--algorithm",
+            "tiled",
+            "--repeat",
+            "1",
+            "--set",
+            "contact_rule=sat",
+            "--set",
+            "decision=recheck",
+            "--set",
+            "group_size=33",
+            "--quiet",
+        ]
 
     def cold(self):
         folder = tempfile.mkdtemp(dir=self.work)
-        return {**os.environ, "POCL_CACHE_DIR": folder, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+        return {
+            **os.environ,
+            "POCL_CACHE_DIR": folder,
+            "OMPI_ALLOW_RUN_AS_ROOT": "1",
+            "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+        }
 
     def right(self, process):
         out, errors = process.communicate()
@@ -31,7 +56,12 @@ class Building(Case):
         self.assertIn("right: ", out)
 
     def at_once(self, environment):
-        started = [subprocess.Popen(self.words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment) for _ in range(AT_ONCE)]
+        started = [
+            subprocess.Popen(
+                self.words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment
+            )
+            for _ in range(AT_ONCE)
+        ]
         for process in started:
             self.right(process)
 
@@ -50,10 +80,18 @@ class Building(Case):
         self.assertRegex(errors[0], r"does not compile with .* \(code -11\): the driver gives no build log$")
 
     if shutil.which("mpirun"):
+
         def test_ranks(self):
             for _ in range(REPEATS):
-                self.right(subprocess.Popen(["mpirun", "--oversubscribe", "--bind-to", "none", "-n", str(AT_ONCE), *self.words],
-                                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=self.cold()))
+                self.right(
+                    subprocess.Popen(
+                        ["mpirun", "--oversubscribe", "--bind-to", "none", "-n", str(AT_ONCE), *self.words],
+                        stdout=subprocess.PIPE,
+                        stderr=subprocess.PIPE,
+                        text=True,
+                        env=self.cold(),
+                    )
+                )
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """choosing.py PROGRAM SOURCE: --algorithm auto: its candidates, messages, records and cache."""
+
 import json
 import sys
 import tempfile
@@ -23,9 +24,30 @@ class Choosing(Case):
     def choose(self, *arguments, environment=None, given=None):
         """(record of the first cell, lines of standard error) of a run that has to succeed."""
         out = self.work / f"{self.id()}{len(list(self.work.iterdir()))}.jsonl"
-        status, text, errors = tandem("run", "--mesh", self.good, "--mesh", self.good, "--device", "host", "--algorithm", "auto",
-                                      "--threads", 1, "--repeat", 1, "--truth", "none", "--choose-seconds", 0.3, "--out", out,
-                                      *sets({**SMALL, **(given or {})}), *arguments, environment=environment or self.environment)
+        status, text, errors = tandem(
+            "run",
+            "--mesh",
+            self.good,
+            "--mesh",
+            self.good,
+            "--device",
+            "host",
+            "--algorithm",
+            "auto",
+            "--threads",
+            1,
+            "--repeat",
+            1,
+            "--truth",
+            "none",
+            "--choose-seconds",
+            0.3,
+            "--out",
+            out,
+            *sets({**SMALL, **(given or {})}),
+            *arguments,
+            environment=environment or self.environment,
+        )
         self.assertEqual(status, 0, (text, errors))
         return self.records(out)[0], errors
 
@@ -33,15 +55,25 @@ class Choosing(Case):
         record, errors = self.choose()
         chosen = record["chosen"]
         self.assertEqual(len(errors), 1, errors)
-        for word in (f"auto: {record['algorithm']} {record['preset']}", f"best of {chosen['of']} candidates", "% ahead of",
-                     "frames 0:0", "s of replays (at most 0.3)"):
+        for word in (
+            f"auto: {record['algorithm']} {record['preset']}",
+            f"best of {chosen['of']} candidates",
+            "% ahead of",
+            "frames 0:0",
+            "s of replays (at most 0.3)",
+        ):
             self.assertIn(word, errors[0])
         self.assertTrue(record["key"].startswith(record["algorithm"] + "|host:"))
         candidates = chosen["candidates"]
         self.assertEqual(len(candidates), chosen["of"])
-        self.assertEqual((candidates[0]["algorithm"], candidates[0]["preset"]), (record["algorithm"], record["preset"]))
+        self.assertEqual(
+            (candidates[0]["algorithm"], candidates[0]["preset"]), (record["algorithm"], record["preset"])
+        )
         self.assertLessEqual(candidates[0]["settings"].items(), record["settings"].items())
-        self.assertEqual({c["algorithm"] for c in candidates}, {a["name"] for a in json.loads(tandem("algorithms", "--json")[1]) if not a.get("baseline")})
+        self.assertEqual(
+            {c["algorithm"] for c in candidates},
+            {a["name"] for a in json.loads(tandem("algorithms", "--json")[1]) if not a.get("baseline")},
+        )
         self.assertEqual(chosen["runner_up"], candidates[1])
         self.assertAlmostEqual(chosen["margin"], candidates[1]["median_ns"] / candidates[0]["median_ns"] - 1)
         self.assertFalse(chosen["from_cache"])
@@ -70,9 +102,17 @@ class Choosing(Case):
         for name in record["chosen"]:
             less = {n: v for n, v in record["chosen"].items() if n != name}
             self.assertFalse(self.validator.is_valid({**record, "chosen": less}), name)
-            self.assertFalse(self.validator.is_valid({**record, "chosen": {**record["chosen"], name: {"x": []}}}), name)
-        for candidates in ([], [{**record["chosen"]["candidates"][0], "median_ns": -1}], [{"algorithm": "tiled"}]):
-            self.assertFalse(self.validator.is_valid({**record, "chosen": {**record["chosen"], "candidates": candidates}}))
+            self.assertFalse(
+                self.validator.is_valid({**record, "chosen": {**record["chosen"], name: {"x": []}}}), name
+            )
+        for candidates in (
+            [],
+            [{**record["chosen"]["candidates"][0], "median_ns": -1}],
+            [{"algorithm": "tiled"}],
+        ):
+            self.assertFalse(
+                self.validator.is_valid({**record, "chosen": {**record["chosen"], "candidates": candidates}})
+            )
         self.assertTrue(self.validator.is_valid({**record, "chosen": None}))
 
     def test_the_second_run_uses_the_cached_choice(self):
@@ -111,8 +151,19 @@ class Choosing(Case):
 
     def test_choices_of_other_users_are_ignored(self):
         self.work.joinpath(self.kept.name).chmod(0o777)
-        self.bad(f"TANDEM_KERNEL_CACHE: other users can write to {self.kept.name}", "run", "--mesh", self.good, "--mesh", self.good, "--device", "host", "--algorithm", "auto",
-                 environment=self.environment)
+        self.bad(
+            f"TANDEM_KERNEL_CACHE: other users can write to {self.kept.name}",
+            "run",
+            "--mesh",
+            self.good,
+            "--mesh",
+            self.good,
+            "--device",
+            "host",
+            "--algorithm",
+            "auto",
+            environment=self.environment,
+        )
         home = self.work / "home"
         (home / ".cache/tandem").mkdir(parents=True)
         (home / ".cache/tandem").chmod(0o777)
@@ -145,26 +196,75 @@ class Choosing(Case):
         failures = {c["algorithm"]: c["failure"] for c in record["chosen"]["candidates"]}
         self.assertEqual([name for name, failure in failures.items() if failure], ["gproximity"])
         self.assertIn("'queues' needs", failures["gproximity"])
-        self.assertLess(len([c for c in record["chosen"]["candidates"] if c["median_ns"]]), record["chosen"]["of"])
+        self.assertLess(
+            len([c for c in record["chosen"]["candidates"] if c["median_ns"]]), record["chosen"]["of"]
+        )
         record = self.choose("--memory", "1MB")[0]
         self.assertEqual({c["failure"] for c in record["chosen"]["candidates"]}, {None})
 
     def test_auto_works_beside_others_and_is_not_part_of_all(self):
         out = self.work / "beside.jsonl"
-        arguments = ("run", "--mesh", self.good, "--mesh", self.good, "--device", "host", "--repeat", 1, "--out", out, *sets(SMALL))
-        self.assertEqual(tandem(*arguments, "--algorithm", "auto,chunked", "--choose-seconds", 0.1, environment=self.environment)[0], 0)
+        arguments = (
+            "run",
+            "--mesh",
+            self.good,
+            "--mesh",
+            self.good,
+            "--device",
+            "host",
+            "--repeat",
+            1,
+            "--out",
+            out,
+            *sets(SMALL),
+        )
+        self.assertEqual(
+            tandem(
+                *arguments,
+                "--algorithm",
+                "auto,chunked",
+                "--choose-seconds",
+                0.1,
+                environment=self.environment,
+            )[0],
+            0,
+        )
         self.assertEqual([r["chosen"] is None for r in self.records(out)], [False, True])
         self.assertEqual(tandem(*arguments)[2], [])
         self.assertTrue(all(r["chosen"] is None for r in self.records(out)[2:]))
         self.assertNotIn("auto", [a["name"] for a in json.loads(tandem("algorithms", "--json")[1])])
 
     def test_other_commands_do_not_choose(self):
-        for arguments in (("check", "plates"), ("accuracy", "plates"), ("simulate", "tower", "-o", self.work / "x.frames")):
+        for arguments in (
+            ("check", "plates"),
+            ("accuracy", "plates"),
+            ("simulate", "tower", "-o", self.work / "x.frames"),
+        ):
             self.bad("auto is for 'tandem run' only", *arguments, "--algorithm", "auto", "--device", "host")
         self.bad("--help", "check", "plates", "--choose-afresh")
         self.bad("impossible", "run", "plates", "--algorithm", "auto", "--device", "host", "--set", "k=10")
-        self.bad("goes with k=8 only", "run", "plates", "--algorithm", "auto", "--device", "host", "--set", "axes=coordinate")
-        self.bad("the nearest is 'seed_threshold'", "run", "plates", "--algorithm", "auto", "--device", "host", "--set", "seed_treshold=1")
+        self.bad(
+            "goes with k=8 only",
+            "run",
+            "plates",
+            "--algorithm",
+            "auto",
+            "--device",
+            "host",
+            "--set",
+            "axes=coordinate",
+        )
+        self.bad(
+            "the nearest is 'seed_threshold'",
+            "run",
+            "plates",
+            "--algorithm",
+            "auto",
+            "--device",
+            "host",
+            "--set",
+            "seed_treshold=1",
+        )
         self.bad("--choose-seconds", "run", "plates", "--algorithm", "auto", "--choose-seconds", "0")
 
 

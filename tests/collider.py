@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""collider.py PROGRAM SOURCE: answers of tandem.Collider of Python, as installed beside the program, equal those of
-tandem run on every device, also with vertices, between two frames, with arrays in memory of the device, and with
-algorithm auto."""
+"""collider.py PROGRAM SOURCE: answers of tandem.Collider of Python, as installed beside the program, equal
+those of tandem run on every device, also with vertices, between two frames, with arrays in memory of the
+device, and with algorithm auto."""
+
 import json
 import sys
 import unittest
@@ -17,11 +18,28 @@ class Answers(ColliderCase):
     def test_equal_those_of_the_program(self):
         texts = [" ".join(map(str, pose)) for pose in POSES]
         for device in DEVICES:
-            for algorithm, settings in (("tiled", {}), ("chunked", {"k": 8}), ("gproximity", {"precision": "double"})):
+            for algorithm, settings in (
+                ("tiled", {}),
+                ("chunked", {"k": 8}),
+                ("gproximity", {"precision": "double"}),
+            ):
                 with self.subTest(device=device, algorithm=algorithm):
                     settings = {**self.small(algorithm), **settings}
-                    dumped = self.dumps("--mesh", self.files[0], "--mesh", self.files[1], "--pose", texts[0], "--pose", texts[1], "--algorithm", algorithm,
-                                        "--device", device, *sets(settings))
+                    dumped = self.dumps(
+                        "--mesh",
+                        self.files[0],
+                        "--mesh",
+                        self.files[1],
+                        "--pose",
+                        texts[0],
+                        "--pose",
+                        texts[1],
+                        "--algorithm",
+                        algorithm,
+                        "--device",
+                        device,
+                        *sets(settings),
+                    )
                     collider = tandem.Collider(self.meshes, algorithm, device, **settings)
                     self.assertEqual(collider.devices, [device])
                     self.assertEqual(collider.settings["k"], str(settings.get("k", 18)))
@@ -58,7 +76,9 @@ class Answers(ColliderCase):
             self.assertTrue((dumped[0][:, 1] < dumped[0][:, 3]).all())
         self.assertEqual(self.collider([mesh]).count(), 0)
         self.assertEqual(self.collider([mesh], self_collision="deformable").count(), 0)
-        self.assertEqual(self.collider([mesh], deformable=True, self_collision="deformable").digest(), answer.digest())
+        self.assertEqual(
+            self.collider([mesh], deformable=True, self_collision="deformable").digest(), answer.digest()
+        )
         with self.assertRaisesRegex(ValueError, "self_collision and setting self are the same"):
             tandem.Collider([mesh], self_collision=True, self="on")
         with self.assertRaisesRegex(ValueError, "self"):
@@ -73,7 +93,9 @@ class Answers(ColliderCase):
                 self.assertEqual(twin.settings, first.settings)
                 self.assertEqual(tandem.Collider(self.meshes, **twin.arguments).settings, first.settings)
                 self.assertEqual(twin.run(POSES).digest(), first.run(POSES).digest())
-        self.assertEqual(self.collider(algorithm="gproximity", groups=3, body_groups=[[1], [2]]).settings["groups"], "3")
+        self.assertEqual(
+            self.collider(algorithm="gproximity", groups=3, body_groups=[[1], [2]]).settings["groups"], "3"
+        )
 
     def test_filters(self):
         expected = self.collider().pairs(POSES)
@@ -83,20 +105,37 @@ class Answers(ColliderCase):
                 with self.subTest(device=device, broad=broad):
                     options = {"device": device, "broad": broad}
                     self.assertEqual(self.collider(never_meet=[(1, 0)], **options).count(POSES), 0)
-                    self.assertEqual(self.collider(never_meet=[(1, 1)], **options).count(POSES), len(expected))
-                    self.assertEqual(self.collider(body_groups=[[0], [3, 31]], meets=[[3], [1]], **options).count(POSES), 0)
-                    self.assertEqual(self.collider(body_groups=[[0], [3, 31]], meets=[[31], None], **options).count(POSES), len(expected))
-        for options, message in (({"body_groups": [[0]]}, "body_groups: 1 lists for 2 bodies"), ({"body_groups": [[0], [32]]}, r"body_groups\[1\]: 32 is not the number of a group"),
-                                 ({"meets": [[-1], None]}, r"meets\[0\]: -1 is not"), ({"never_meet": [(0, 2)]}, r"never_meet\[0\]: expected two bodies of 2"),
-                                 ({"never_meet": [(0, 1, 1)]}, r"never_meet\[0\]: expected two")):
+                    self.assertEqual(
+                        self.collider(never_meet=[(1, 1)], **options).count(POSES), len(expected)
+                    )
+                    self.assertEqual(
+                        self.collider(body_groups=[[0], [3, 31]], meets=[[3], [1]], **options).count(POSES), 0
+                    )
+                    self.assertEqual(
+                        self.collider(body_groups=[[0], [3, 31]], meets=[[31], None], **options).count(POSES),
+                        len(expected),
+                    )
+        for options, message in (
+            ({"body_groups": [[0]]}, "body_groups: 1 lists for 2 bodies"),
+            ({"body_groups": [[0], [32]]}, r"body_groups\[1\]: 32 is not the number of a group"),
+            ({"meets": [[-1], None]}, r"meets\[0\]: -1 is not"),
+            ({"never_meet": [(0, 2)]}, r"never_meet\[0\]: expected two bodies of 2"),
+            ({"never_meet": [(0, 1, 1)]}, r"never_meet\[0\]: expected two"),
+        ):
             with self.assertRaisesRegex(ValueError, message):
                 self.collider(**options)
 
     def test_meshes_of_every_kind(self):
         expected = self.collider().pairs(POSES)
         self.assertGreater(len(expected), 10)
-        for first in (str(self.files[0]), self.files[0], tandem.read_mesh(self.files[0]), tandem.make_mesh(*self.parts[0]), self.parts[0],
-                      tuple(ByDlpack(array) for array in self.meshes[0])):
+        for first in (
+            str(self.files[0]),
+            self.files[0],
+            tandem.read_mesh(self.files[0]),
+            tandem.make_mesh(*self.parts[0]),
+            self.parts[0],
+            tuple(ByDlpack(array) for array in self.meshes[0]),
+        ):
             with self.subTest(type=type(first).__name__):
                 self.assertTrue((self.collider([first, self.files[1]]).pairs(POSES) == expected).all())
 
@@ -115,18 +154,41 @@ class Answers(ColliderCase):
 
     def test_vertices_are_used_as_given(self):
         """The program's answer for a mesh with these vertices."""
-        moved = [numpy.array(points) * [1.0, 0.75, 1.25] + [0.125 * i, 0, 0] for i, (points, _) in enumerate(self.parts)]
-        files = [gmsh(self.work / f"moved{i}.msh", points.tolist(), self.parts[i][1]) for i, points in enumerate(moved)]
+        moved = [
+            numpy.array(points) * [1.0, 0.75, 1.25] + [0.125 * i, 0, 0]
+            for i, (points, _) in enumerate(self.parts)
+        ]
+        files = [
+            gmsh(self.work / f"moved{i}.msh", points.tolist(), self.parts[i][1])
+            for i, points in enumerate(moved)
+        ]
         for device in DEVICES:
             with self.subTest(device=device):
-                dumped = self.dumps("--mesh", files[0], "--mesh", files[1], "--algorithm", "tiled", "--device", device, *sets(self.small("tiled")))
+                dumped = self.dumps(
+                    "--mesh",
+                    files[0],
+                    "--mesh",
+                    files[1],
+                    "--algorithm",
+                    "tiled",
+                    "--device",
+                    device,
+                    *sets(self.small("tiled")),
+                )
                 collider = self.collider(device=device, deformable=True)
                 self.assertNotEqual(collider.count(), len(dumped[0]))
                 self.expect_answer(collider.run(vertices=moved), dumped)
-                self.expect_answer(collider.run(vertices={1: ByDlpack(moved[1]), 0: moved[0].astype(">f8")}), dumped)
-                mixed = self.collider([(moved[0], self.meshes[0][1]), self.meshes[1]], device=device, deformable=[1])
+                self.expect_answer(
+                    collider.run(vertices={1: ByDlpack(moved[1]), 0: moved[0].astype(">f8")}), dumped
+                )
+                mixed = self.collider(
+                    [(moved[0], self.meshes[0][1]), self.meshes[1]], device=device, deformable=[1]
+                )
                 self.expect_answer(mixed.run(POSES[:1] * 2, [moved[1]]), dumped)
-                self.assertEqual(mixed.run(POSES).count, self.collider([(moved[0], self.meshes[0][1]), self.meshes[1]]).count())
+                self.assertEqual(
+                    mixed.run(POSES).count,
+                    self.collider([(moved[0], self.meshes[0][1]), self.meshes[1]]).count(),
+                )
 
     def test_scenes_of_the_laboratory(self):
         for name, frame in (("plates", 40), ("pile:bodies=20", 0)):
@@ -139,8 +201,11 @@ class Answers(ColliderCase):
             scene.poses(scene.frame_count)
 
     def test_devices_equal_those_of_the_program(self):
-        listed = {device["id"]: {**device, "backend": backend["backend"]} for backend in json.loads(run_tandem("devices", "--json")[1])
-                  for device in backend["devices"]}
+        listed = {
+            device["id"]: {**device, "backend": backend["backend"]}
+            for backend in json.loads(run_tandem("devices", "--json")[1])
+            for device in backend["devices"]
+        }
         mine = tandem.devices()
         self.assertEqual([device["id"] for device in mine], list(listed))
         for device in mine:
@@ -150,9 +215,14 @@ class Answers(ColliderCase):
 
 class Swept(ColliderCase):
     """Setting motion=linear: pairs of a frame and its successor."""
+
     def passing(self):
-        """Poses of two frames without pairs, between which body 1 passes through body 0; and their scene for the program."""
-        frames = [[POSES[0], [x, 0.125, 0.0625, *turn]] for x, turn in ((-20.0, [1, 0, 0, 0]), (20.0, [0.98, 0.1, 0.05, 0.15]))]
+        """Poses of two frames without pairs, between which body 1 passes through body 0; and their scene for
+        the program."""
+        frames = [
+            [POSES[0], [x, 0.125, 0.0625, *turn]]
+            for x, turn in ((-20.0, [1, 0, 0, 0]), (20.0, [0.98, 0.1, 0.05, 0.15]))
+        ]
         meshes = {f"part{i}": {"file": file.name} for i, file in enumerate(self.files)}
         bodies = [{"mesh": f"part{i}", "poses": [frame[i] for frame in frames]} for i in range(2)]
         file = self.work / "passing.json"
@@ -165,30 +235,57 @@ class Swept(ColliderCase):
             for algorithm, settings in (("tiled", {}), ("chunked", {"k": 8})):
                 with self.subTest(device=device, algorithm=algorithm):
                     given = {**self.small(algorithm), **settings, "motion": "linear", "decision": "exact"}
-                    pairs, contacts, _ = self.dumps(file, "--frames", 0, "--algorithm", algorithm, "--device", device, *sets(given))
+                    pairs, contacts, _ = self.dumps(
+                        file, "--frames", 0, "--algorithm", algorithm, "--device", device, *sets(given)
+                    )
                     self.assertGreater(len(pairs), 10)
                     collider = tandem.Collider(self.meshes, algorithm, device, **given)
                     for _ in range(2):  # the next frame is as good
                         answer = collider.run(before, next_poses=after)
                         self.assertTrue((answer.pairs() == pairs).all())
                         self.assertEqual((answer.contact_count, len(contacts)), (0, 0))
-                    self.assertEqual([collider.count(frame, next_poses=frame) for frame in (before, after)], [0, 0])
+                    self.assertEqual(
+                        [collider.count(frame, next_poses=frame) for frame in (before, after)], [0, 0]
+                    )
                     self.assertEqual(collider.digest(before, next_poses=after), answer.digest())
                     self.assertTrue((collider.pairs(before, next_poses=after) == pairs).all())
                     contacts = self.collider(algorithm=algorithm, decision="exact").contacts(POSES).pairs
                     self.assertGreater(len(contacts), 10)
-                    self.assertTrue((collider.contacts(POSES, next_poses=after).pairs == contacts).all(), "those of the frame")
+                    self.assertTrue(
+                        (collider.contacts(POSES, next_poses=after).pairs == contacts).all(),
+                        "those of the frame",
+                    )
 
     def test_deformable_bodies(self):
         scene = tandem.make_scene("plates")
         given = {"motion": "linear", "decision": "exact"}
         for device in DEVICES:
-            collider = self.collider(scene.meshes, bodies=scene.bodies, deformable=scene.deformable, device=device, **given)
-            dumped = self.dumps("plates", "--frames", 40, "--algorithm", "tiled", "--device", device, *sets({**self.small("tiled"), **given}))
-            poses, vertices = [scene.poses(frame) for frame in (40, 41)], [scene.vertices(frame) for frame in (40, 41)]
-            self.expect_answer(collider.run(poses[0], vertices[0], next_poses=poses[1], next_vertices=vertices[1]), dumped)
-            self.expect_answer(collider.run(vertices=vertices[0], next_vertices=tuple(vertices[1].values())), dumped)
-            self.assertNotEqual(len(dumped[0]), collider.count(vertices=vertices[0], next_vertices=vertices[0]))
+            collider = self.collider(
+                scene.meshes, bodies=scene.bodies, deformable=scene.deformable, device=device, **given
+            )
+            dumped = self.dumps(
+                "plates",
+                "--frames",
+                40,
+                "--algorithm",
+                "tiled",
+                "--device",
+                device,
+                *sets({**self.small("tiled"), **given}),
+            )
+            poses, vertices = (
+                [scene.poses(frame) for frame in (40, 41)],
+                [scene.vertices(frame) for frame in (40, 41)],
+            )
+            self.expect_answer(
+                collider.run(poses[0], vertices[0], next_poses=poses[1], next_vertices=vertices[1]), dumped
+            )
+            self.expect_answer(
+                collider.run(vertices=vertices[0], next_vertices=tuple(vertices[1].values())), dumped
+            )
+            self.assertNotEqual(
+                len(dumped[0]), collider.count(vertices=vertices[0], next_vertices=vertices[0])
+            )
 
     def test_what_is_left_out_of_a_successor_is_at_rest(self):
         given = {"motion": "linear", "contact_rule": "none"}
@@ -197,7 +294,11 @@ class Swept(ColliderCase):
         soft, mixed = self.collider(deformable=True, **given), self.collider(deformable=[1], **given)
         whole = soft.digest(vertices=[first + 1, moved], next_vertices=[first, moved])
         self.assertNotEqual(soft.digest(vertices=[first + 1, moved], next_vertices=[first + 1, moved]), whole)
-        self.assertEqual(soft.digest(vertices=[first + 1, moved], next_vertices={1: moved}), whole, "not the last successor's")
+        self.assertEqual(
+            soft.digest(vertices=[first + 1, moved], next_vertices={1: moved}),
+            whole,
+            "not the last successor's",
+        )
         poses, still = [[3, 0, 0, 1, 0, 0, 0], POSES[0]], [POSES[0]] * 2
         whole = mixed.digest(poses, [moved], next_poses=still, next_vertices=[second])
         for other in ({"next_poses": poses}, {"next_poses": still, "next_vertices": [moved]}):
@@ -210,33 +311,55 @@ class Swept(ColliderCase):
         given = {"motion": "linear", "contact_rule": "none"}
         right = self.collider(**given).digest(before, next_poses=after)
         self.assertGreater(right.count, 10)
-        auto = [tandem.Collider(self.meshes, "auto", pair_capacity=65536, queue_bytes=65536, **given) for _ in range(2)]
+        auto = [
+            tandem.Collider(self.meshes, "auto", pair_capacity=65536, queue_bytes=65536, **given)
+            for _ in range(2)
+        ]
         self.assertGreater(len(auto[0].tune(before, seconds=0.3, next_poses=after)), 3)
         for collider in auto:
             self.assertEqual(collider.digest(before, next_poses=after), right)
-            self.assertEqual((collider.algorithm in tandem.algorithms(), collider.settings["motion"]), (True, "linear"))
-        soft = tandem.Collider(self.meshes, "auto", deformable=True, pair_capacity=65536, queue_bytes=65536, **given)
+            self.assertEqual(
+                (collider.algorithm in tandem.algorithms(), collider.settings["motion"]), (True, "linear")
+            )
+        soft = tandem.Collider(
+            self.meshes, "auto", deformable=True, pair_capacity=65536, queue_bytes=65536, **given
+        )
         parts = tuple(points for points, _ in self.meshes)
         self.assertGreater(len(soft.tune(vertices=parts, seconds=0.3, next_vertices=parts)), 3)
 
 
 class Auto(ColliderCase):
     def test_keeps_the_fastest_and_names_it(self):
-        collider = tandem.Collider(self.meshes, "auto", precision="double", pair_capacity=65536, contact_capacity=65536, queue_bytes=65536)
+        collider = tandem.Collider(
+            self.meshes,
+            "auto",
+            precision="double",
+            pair_capacity=65536,
+            contact_capacity=65536,
+            queue_bytes=65536,
+        )
         self.assertEqual((collider.algorithm, collider.settings), ("auto", {}))
         collider.reset()
         trials = collider.tune(POSES, seconds=0.3)
         self.assertGreater(len(trials), 3)
-        self.assertEqual([trial.seconds for trial in trials[:1]], [min(trial.seconds for trial in trials[:2])])
+        self.assertEqual(
+            [trial.seconds for trial in trials[:1]], [min(trial.seconds for trial in trials[:2])]
+        )
         self.assertIn(collider.algorithm, tandem.algorithms())
-        self.assertEqual((collider.algorithm, collider.settings["precision"]), (trials[0].algorithm, "double"))
+        self.assertEqual(
+            (collider.algorithm, collider.settings["precision"]), (trials[0].algorithm, "double")
+        )
         for name, value in trials[0].changes.items():
             self.assertEqual(collider.settings[name], "recheck" if value == "usual" else value)
         self.assertEqual(collider.digest(POSES), self.collider(precision="double").digest(POSES))
         print(f"\n  auto: {trials[0]} of {len(trials)}", end="", file=sys.stderr)
 
     def test_presets_that_reproduce_other_programs_keep_their_contacts(self):
-        for algorithm, preset, rule in (("chunked", "paper", "opposing"), ("gproximity", "unc2010", "opposing"), ("chunked", "grouped", "sat")):
+        for algorithm, preset, rule in (
+            ("chunked", "paper", "opposing"),
+            ("gproximity", "unc2010", "opposing"),
+            ("chunked", "grouped", "sat"),
+        ):
             self.assertEqual(self.collider(algorithm=algorithm, preset=preset).settings["contact_rule"], rule)
             chosen = tandem.Collider(self.meshes, "auto", preset=preset)
             chosen.tune(POSES, seconds=0.01)
@@ -244,22 +367,34 @@ class Auto(ColliderCase):
 
     def test_compares_k_where_it_changes_no_contact(self):
         given = {"output": "contacts", "decision": "exact"}
-        collider = tandem.Collider(self.meshes, "auto", pair_capacity=65536, contact_capacity=65536, queue_bytes=65536, **given)
+        collider = tandem.Collider(
+            self.meshes, "auto", pair_capacity=65536, contact_capacity=65536, queue_bytes=65536, **given
+        )
         trials = collider.tune(POSES, seconds=60)  # enough to try all candidates also on a loaded machine
         self.assertEqual({trial.changes.get("k", "18") for trial in trials}, {"6", "18"})
         for k in (6, 18):
-            self.assertEqual(collider.run(POSES).contact_digest(), self.collider(k=k, **given).run(POSES).contact_digest())
+            self.assertEqual(
+                collider.run(POSES).contact_digest(), self.collider(k=k, **given).run(POSES).contact_digest()
+            )
 
     def test_a_first_frame_chooses(self):
-        soft = tandem.Collider(self.meshes, "auto", deformable=True, output="count", pair_capacity=65536, queue_bytes=65536)
+        soft = tandem.Collider(
+            self.meshes, "auto", deformable=True, output="count", pair_capacity=65536, queue_bytes=65536
+        )
         self.assertEqual(soft.count(), self.collider(deformable=True, output="count").count())
         self.assertNotEqual(soft.algorithm, "auto")
 
     def test_refused_settings(self):
-        for words, options in (("unknown setting 'kk'", {"kk": 8}), ("k=7", {"k": 7}), ("unknown preset 'fairest'", {"preset": "fairest"})):
+        for words, options in (
+            ("unknown setting 'kk'", {"kk": 8}),
+            ("k=7", {"k": 7}),
+            ("unknown preset 'fairest'", {"preset": "fairest"}),
+        ):
             with self.subTest(words), self.assertRaisesRegex(ValueError, words):
                 tandem.Collider(self.meshes, "auto", **options)
-        with self.assertRaisesRegex(ValueError, "tune: algorithm tiled was named; make the collider with algorithm=auto"):
+        with self.assertRaisesRegex(
+            ValueError, "tune: algorithm tiled was named; make the collider with algorithm=auto"
+        ):
             self.collider().tune(POSES)
         undecided = tandem.Collider(self.meshes, "auto")
         with self.assertRaisesRegex(ValueError, "poses: 1 rows for 2 bodies"):
@@ -270,17 +405,27 @@ class Auto(ColliderCase):
 class DeviceInput(ColliderCase):
     """The code path of GPU arrays, run on host arrays, which are in memory of device host and are copied to other
     devices."""
+
     def test_frames_have_the_answers_of_host_memory(self):
-        moved = [numpy.array(points) * [1.0, 0.75, 1.25] + [0.125 * i, 0, 0] for i, (points, _) in enumerate(self.parts)]
+        moved = [
+            numpy.array(points) * [1.0, 0.75, 1.25] + [0.125 * i, 0, 0]
+            for i, (points, _) in enumerate(self.parts)
+        ]
         for device in DEVICES:
             with self.subTest(device=device):
                 collider, soft = self.collider(device=device), self.collider(device=device, deformable=True)
                 mixed = self.collider(device=device, deformable=[1])
                 for dtype in (float, numpy.float32):
                     rows, points = numpy.array(POSES, dtype), [part.astype(dtype) for part in moved]
-                    for mine, expected in ((collider._core.run_device_input(rows, []), collider.run(rows)), (soft._core.run_device_input(None, points), soft.run(vertices=points)),
-                                       (soft._core.run_device_input(None, [None, points[1]]), soft.run(vertices={1: points[1]})),
-                                       (mixed._core.run_device_input(rows, [None, points[1]]), mixed.run(rows, [points[1]]))):
+                    for mine, expected in (
+                        (collider._core.run_device_input(rows, []), collider.run(rows)),
+                        (soft._core.run_device_input(None, points), soft.run(vertices=points)),
+                        (
+                            soft._core.run_device_input(None, [None, points[1]]),
+                            soft.run(vertices={1: points[1]}),
+                        ),
+                        (mixed._core.run_device_input(rows, [None, points[1]]), mixed.run(rows, [points[1]])),
+                    ):
                         self.assertGreater(expected.contact_count, 10)
                         self.assertEqual(mine.digest(), tuple(expected.digest()))
                         self.assertEqual(mine.contact_digest(), tuple(expected.contact_digest()))
@@ -300,9 +445,14 @@ class DeviceInput(ColliderCase):
                 mine = mixed._core.run_device_input(rows[0], [None, points[0]], rows[1], [None, points[1]])
                 self.assertEqual(mine.digest(), tuple(right.digest()))
             if device == "host":
-                self.assertEqual(mixed._core.addresses, [address(array) for array in (rows[0], points[0], rows[1], points[1])])
+                self.assertEqual(
+                    mixed._core.addresses,
+                    [address(array) for array in (rows[0], points[0], rows[1], points[1])],
+                )
             still = mixed._core.run_device_input(rows[0], [None, points[0]], None, [None, points[0]])
-            self.assertEqual(still.digest(), tuple(mixed.digest(rows[0], [points[0]], next_vertices=[points[0]])))
+            self.assertEqual(
+                still.digest(), tuple(mixed.digest(rows[0], [points[0]], next_vertices=[points[0]]))
+            )
 
     def test_values_out_of_range_give_the_same_error(self):
         collider, soft = self.collider(), self.collider(deformable=[1])
@@ -311,8 +461,12 @@ class DeviceInput(ColliderCase):
             rows = numpy.array(POSES)
             rows[at] = value
             messages = []
-            for run in (collider.run, lambda given: collider._core.run_device_input(given, []),
-                        lambda given: swept.run(POSES, next_poses=given), lambda given: swept._core.run_device_input(numpy.array(POSES, float), [], given)):
+            for run in (
+                collider.run,
+                lambda given: collider._core.run_device_input(given, []),
+                lambda given: swept.run(POSES, next_poses=given),
+                lambda given: swept._core.run_device_input(numpy.array(POSES, float), [], given),
+            ):
                 with self.assertRaises(ValueError) as caught:
                     run(rows)
                 messages.append(str(caught.exception))
@@ -321,7 +475,9 @@ class DeviceInput(ColliderCase):
         points[3, 2] = numpy.nan
         with self.assertRaisesRegex(ValueError, "body 1: vertex 3 is not finite"):
             soft._core.run_device_input(None, [None, points])
-        self.assertEqual(soft._core.run_device_input(None, [None, self.meshes[1][0]]).digest(), tuple(soft.digest()))
+        self.assertEqual(
+            soft._core.run_device_input(None, [None, self.meshes[1][0]]).digest(), tuple(soft.digest())
+        )
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Helpers shared by tests of tandem.Collider: the package `tandem`, installed into an empty folder when this is
-imported; colliders and answers of the program; arrays of other libraries."""
+"""Helpers shared by tests of tandem.Collider: the package `tandem`, installed into an empty folder when this
+is imported; colliders and answers of the program; arrays of other libraries."""
+
 import csv
 import json
 import pathlib
@@ -13,9 +14,14 @@ import numpy
 from program import PROGRAM, SMALL, Case, bar, gmsh, tandem as run_tandem
 
 FOLDER = tempfile.TemporaryDirectory(prefix="tandem-collider")
-subprocess.run(["cmake", "--install", PROGRAM.parent, "--component", "python", "--prefix", FOLDER.name], check=True, capture_output=True)
+subprocess.run(
+    ["cmake", "--install", PROGRAM.parent, "--component", "python", "--prefix", FOLDER.name],
+    check=True,
+    capture_output=True,
+)
 sys.path.insert(0, FOLDER.name)
 import tandem
+
 assert pathlib.Path(tandem.__file__).is_relative_to(FOLDER.name)
 
 DEVICES = ("host", "opencl:0")
@@ -28,6 +34,7 @@ def address(array):
 
 class OnDevice:
     """An array that reports device memory, as those of GPU libraries do."""
+
     def __dlpack_device__(self):
         return 2, 0
 
@@ -37,6 +44,7 @@ class OnDevice:
 
 class ByDlpack:
     """An array in host memory that is not a NumPy array."""
+
     def __init__(self, array):
         self.array = array
 
@@ -56,22 +64,46 @@ class ColliderCase(Case):
         cls.meshes = [(numpy.array(points), numpy.array(tets)) for points, tets in cls.parts]
 
     def collider(self, meshes=None, **options):
-        return tandem.Collider(self.meshes if meshes is None else meshes, **{**self.small(options.get("algorithm", "tiled")), **options})
+        return tandem.Collider(
+            self.meshes if meshes is None else meshes,
+            **{**self.small(options.get("algorithm", "tiled")), **options},
+        )
 
     def small(self, algorithm):
         """Capacities of few rows, for those that the algorithm has."""
-        listed, = json.loads(run_tandem("algorithms", algorithm, "--json")[1])
-        return {name: SMALL[name] for name in SMALL if name in {parameter["name"] for parameter in listed["parameters"]}}
+        (listed,) = json.loads(run_tandem("algorithms", algorithm, "--json")[1])
+        return {
+            name: SMALL[name]
+            for name in SMALL
+            if name in {parameter["name"] for parameter in listed["parameters"]}
+        }
 
     def dumps(self, *arguments):
-        """Pairs, pairs of contacts, and points, normals and depths from a run of the program over one frame, with Python's default contacts."""
+        """Pairs, pairs of contacts, and points, normals and depths from a run of the program over one frame,
+        with Python's default contacts."""
         paths = self.work / "pairs.csv", self.work / "contacts.csv"
         words = " ".join(str(argument) for argument in arguments)
-        contacts = [f"{name}={value}" for name, value in (("contact_rule", "sat"), ("decision", "usual")) if f"{name}=" not in words]
-        status, text, errors = run_tandem("run", *arguments, *(word for one in contacts for word in ("--set", one)), "--no-check", "--no-count", "--dump-pairs", paths[0], "--dump-contacts", paths[1])
+        contacts = [
+            f"{name}={value}"
+            for name, value in (("contact_rule", "sat"), ("decision", "usual"))
+            if f"{name}=" not in words
+        ]
+        status, text, errors = run_tandem(
+            "run",
+            *arguments,
+            *(word for one in contacts for word in ("--set", one)),
+            "--no-check",
+            "--no-count",
+            "--dump-pairs",
+            paths[0],
+            "--dump-contacts",
+            paths[1],
+        )
         self.assertEqual((status, errors), (0, []), text)
-        pairs, contacts = (numpy.array(list(csv.reader(path.read_text().splitlines()))[1:], dtype=float).reshape(-1, columns)
-                           for path, columns in zip(paths, (5, 12)))
+        pairs, contacts = (
+            numpy.array(list(csv.reader(path.read_text().splitlines()))[1:], dtype=float).reshape(-1, columns)
+            for path, columns in zip(paths, (5, 12))
+        )
         return pairs[:, 1:].astype(int), contacts[:, 1:5].astype(int), contacts[:, 5:]
 
     def expect_answer(self, answer, dumped):
@@ -83,5 +115,7 @@ class ColliderCase(Case):
         contacts = answer.contacts()
         self.assertEqual(answer.contact_count, len(contacts.pairs))
         self.assertTrue((contacts.pairs == ids).all())
-        self.assertTrue((numpy.column_stack((contacts.points, contacts.normals, contacts.depths)) == values).all())
+        self.assertTrue(
+            (numpy.column_stack((contacts.points, contacts.normals, contacts.depths)) == values).all()
+        )
         self.assertEqual(contacts.features.shape, contacts.depths.shape)

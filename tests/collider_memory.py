@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""collider_memory.py PROGRAM SOURCE: tandem.Collider shares memory where documented, checked by pointer. Several threads
-may use it, and the interpreter's lock is released."""
+"""collider_memory.py PROGRAM SOURCE: tandem.Collider shares memory where documented, checked by pointer.
+Several threads may use it, and the interpreter's lock is released."""
+
 import sys
 import threading
 import time
@@ -40,12 +41,17 @@ class Memory(ColliderCase):
                     self.assertGreater(answer.count, 10)
                     self.assertTrue((numpy.from_dlpack(answer.pairs(on_device=True)) == answer.pairs()).all())
                 self.assertEqual([(answer.digest(), answer.contact_digest()) for answer in answers], before)
-                self.assertTrue((answers[0].contacts().points == self.collider(**settings).contacts(POSES).points).all())
+                self.assertTrue(
+                    (answers[0].contacts().points == self.collider(**settings).contacts(POSES).points).all()
+                )
 
     def test_no_pairs_are_an_empty_array(self):
         far = [POSES[0], [100, 0, 0, 1, 0, 0, 0]]
         answer = self.collider().run(far)
-        self.assertEqual((answer.count, answer.pairs().shape, numpy.from_dlpack(answer.pairs(on_device=True)).shape), (0, (0, 4), (0, 4)))
+        self.assertEqual(
+            (answer.count, answer.pairs().shape, numpy.from_dlpack(answer.pairs(on_device=True)).shape),
+            (0, (0, 4), (0, 4)),
+        )
         self.assertEqual([column.shape for column in answer.contacts()], [(0, 4), (0,), (0, 3), (0, 3), (0,)])
 
     def test_contacts_are_columns_of_one_array(self):
@@ -58,6 +64,7 @@ class Memory(ColliderCase):
 
     def test_input_is_not_copied(self):
         from tandem.arrays import host_array
+
         rows = numpy.array(POSES)
         self.assertIs(host_array(rows, "poses", 7), rows)
         self.assertEqual(address(host_array(ByDlpack(rows), "poses", 7)), address(rows))
@@ -65,7 +72,9 @@ class Memory(ColliderCase):
         mesh = tandem.read_mesh(self.files[0])
         self.assertEqual(address(mesh.vertices), address(mesh.vertices))
         self.assertFalse(mesh.vertices.flags.writeable)
-        self.assertTrue((mesh.vertices == self.meshes[0][0]).all() and (mesh.tetrahedra == self.meshes[0][1]).all())
+        self.assertTrue(
+            (mesh.vertices == self.meshes[0][0]).all() and (mesh.tetrahedra == self.meshes[0][1]).all()
+        )
         view = mesh.vertices
         del mesh
         self.assertTrue((view == self.meshes[0][0]).all())
@@ -95,7 +104,9 @@ class Memory(ColliderCase):
                 with self.assertRaisesRegex(ValueError, "poses: __dlpack__ failed: .*grad"):
                     self.collider().run(poses.requires_grad_())
                 if hasattr(taken.Tensor, "__dlpack_c_exchange_api__"):
-                    with unittest.mock.patch.object(taken.Tensor, "__dlpack__", side_effect=BufferError("not by the table")):
+                    with unittest.mock.patch.object(
+                        taken.Tensor, "__dlpack__", side_effect=BufferError("not by the table")
+                    ):
                         self.expect_digest(answer, poses.detach())
             elif library == "jax":
                 array = taken.numpy.from_dlpack(answer.pairs(on_device=True))
@@ -123,6 +134,7 @@ class Threads(ColliderCase):
             while not done.is_set():
                 ticks.append(time.perf_counter())
                 time.sleep(1e-3)
+
         thread = threading.Thread(target=tick)
         thread.start()
         spans = []
@@ -134,7 +146,11 @@ class Threads(ColliderCase):
         thread.join()
         within = [sum(begin < tick < end for tick in ticks) for begin, end in spans]
         longest = max(spans, key=lambda span: span[1] - span[0])
-        print(f"\n  ticks within frames of up to {1e3 * (longest[1] - longest[0]):.1f} ms: {within}", end="", file=sys.stderr)
+        print(
+            f"\n  ticks within frames of up to {1e3 * (longest[1] - longest[0]):.1f} ms: {within}",
+            end="",
+            file=sys.stderr,
+        )
         self.assertGreater(max(within), 3)
 
     def test_one_collider_from_several_threads(self):
@@ -147,8 +163,12 @@ class Threads(ColliderCase):
             for step in range(40):
                 i = (first + step) % len(frames)
                 answer = collider.run(frames[i])
-                if not (answer.pairs() == expected[i]).all() or answer.contact_digest().count != answer.contact_count:
+                if (
+                    not (answer.pairs() == expected[i]).all()
+                    or answer.contact_digest().count != answer.contact_count
+                ):
                     wrong.append(i)
+
         threads = [threading.Thread(target=work, args=(first,)) for first in range(4)]
         for thread in threads:
             thread.start()
@@ -164,12 +184,13 @@ class Threads(ColliderCase):
             for _ in range(3):
                 collider = self.collider(device=device)
                 found.extend(collider.digest(POSES) for _ in range(10))
+
         threads = [threading.Thread(target=work, args=(device,)) for device in DEVICES + DEVICES]
         for thread in threads:
             thread.start()
         for thread in threads:
             thread.join()
-        expected, = {self.collider(device=device).digest(POSES) for device in DEVICES}
+        (expected,) = {self.collider(device=device).digest(POSES) for device in DEVICES}
         self.assertEqual((len(found), set(found)), (120, {expected}))
 
 

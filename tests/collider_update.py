@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""collider_update.py PROGRAM SOURCE: tandem.Collider.update() gives the answers of run() for the whole frame, and refuses changes that are
-wrong or have no frame."""
+"""collider_update.py PROGRAM SOURCE: tandem.Collider.update() gives the answers of run() for the whole frame,
+and refuses changes that are wrong or have no frame."""
+
 import sys
 import unittest
 
@@ -28,7 +29,9 @@ class Update(ColliderCase):
         meshes = [self.meshes[i % 2] for i in range(5)]
         for device in DEVICES:
             for origin in ("world", "auto"):
-                mine, other = (self.collider(meshes, device=device, deformable=[1, 4], origin=origin) for _ in range(2))
+                mine, other = (
+                    self.collider(meshes, device=device, deformable=[1, 4], origin=origin) for _ in range(2)
+                )
                 poses, vertices = self.poses(5), {1: meshes[1][0] + 0.125, 4: meshes[4][0] * 1.25}
                 first = mine.run(poses, vertices)
                 self.expect_equal(first, other.run(poses, vertices))
@@ -37,8 +40,12 @@ class Update(ColliderCase):
                     with self.subTest(device=device, origin=origin, changed=changed, moved=moved):
                         poses, vertices = poses.copy(), dict(vertices)
                         poses[changed] = self.poses(len(changed))
-                        vertices.update({body: vertices[body] + self.random.uniform(-0.1, 0.1, size=3) for body in moved})
-                        answer = mine.update({body: poses[body] for body in changed}, {body: vertices[body] for body in moved})
+                        vertices.update(
+                            {body: vertices[body] + self.random.uniform(-0.1, 0.1, size=3) for body in moved}
+                        )
+                        answer = mine.update(
+                            {body: poses[body] for body in changed}, {body: vertices[body] for body in moved}
+                        )
                         self.assertGreater(answer.contact_count, 10)
                         self.expect_equal(answer, other.run(poses, vertices))
                         answers.add(answer.contact_digest())
@@ -52,8 +59,12 @@ class Update(ColliderCase):
         matrix = matrices(POSES[1:])[0]
         for pose in (POSES[1], numpy.array(POSES[1], numpy.float64), tuple(POSES[1])):
             self.expect_equal(mine.update({1: pose}), right)
-        self.assertEqual(mine.update({numpy.int64(1): matrix}).digest(), whole.run([numpy.eye(4), matrix]).digest())
-        self.assertEqual(mine.update({0: POSES[0], 1: matrix}).digest(), whole.run([numpy.eye(4), matrix]).digest())
+        self.assertEqual(
+            mine.update({numpy.int64(1): matrix}).digest(), whole.run([numpy.eye(4), matrix]).digest()
+        )
+        self.assertEqual(
+            mine.update({0: POSES[0], 1: matrix}).digest(), whole.run([numpy.eye(4), matrix]).digest()
+        )
         self.expect_equal(mine.update({}), whole.run([numpy.eye(4), matrix]))
         self.assertEqual(mine.update({1: POSES[1]}, body_pairs=[]).count, 0)
         self.assertEqual(mine.update(body_pairs=[(1, 0)]).digest(), right.digest())
@@ -63,17 +74,28 @@ class Update(ColliderCase):
     def test_after_tune(self):
         tuned, whole = tandem.Collider(self.meshes, algorithm="auto"), self.collider()
         tuned.tune(POSES, seconds=0.01)
-        self.assertEqual(tuned.update({0: [0.125, 0, 0, 1, 0, 0, 0]}).count, whole.count([[0.125, 0, 0, 1, 0, 0, 0], POSES[1]]))
+        self.assertEqual(
+            tuned.update({0: [0.125, 0, 0, 1, 0, 0, 0]}).count,
+            whole.count([[0.125, 0, 0, 1, 0, 0, 0], POSES[1]]),
+        )
 
     def test_successors_start_from_the_frame(self):
         mine, other = (self.collider(deformable=[1], motion="linear", contact_rule="none") for _ in range(2))
         vertices = self.meshes[1][0]
         mine.run(POSES, [vertices], next_poses=POSES[::-1], next_vertices=[vertices + 50])
         row, shifted = [0.125, 0, 0, 1, 0, 0, 0], vertices + [0, 0.25, 0]
-        for given, expected in (({"next_vertices": {1: vertices + 9}}, {"next_vertices": [vertices + 9], "next_poses": [row] * 2}),
-                                ({"next_poses": {0: POSES[1]}}, {"next_vertices": [shifted], "next_poses": POSES[::-1]}),
-                                ({"next_poses": {}}, {"next_vertices": [shifted], "next_poses": [row] * 2})):
-            answer, whole = mine.update({0: row}, {1: shifted}, **given), other.run([row] * 2, [shifted], **expected)
+        for given, expected in (
+            (
+                {"next_vertices": {1: vertices + 9}},
+                {"next_vertices": [vertices + 9], "next_poses": [row] * 2},
+            ),
+            ({"next_poses": {0: POSES[1]}}, {"next_vertices": [shifted], "next_poses": POSES[::-1]}),
+            ({"next_poses": {}}, {"next_vertices": [shifted], "next_poses": [row] * 2}),
+        ):
+            answer, whole = (
+                mine.update({0: row}, {1: shifted}, **given),
+                other.run([row] * 2, [shifted], **expected),
+            )
             self.assertGreater(whole.count, 10)
             self.assertEqual(answer.digest(), whole.digest())
         with self.assertRaisesRegex(ValueError, "motion=linear needs the frame's successor"):
@@ -81,7 +103,9 @@ class Update(ColliderCase):
 
     def test_refused_changes_leave_the_frame(self):
         collider = self.collider(deformable=[1])
-        with self.assertRaisesRegex(ValueError, r"^update\(\) has no frame to change; give run\(\) the first frame, of all bodies$"):
+        with self.assertRaisesRegex(
+            ValueError, r"^update\(\) has no frame to change; give run\(\) the first frame, of all bodies$"
+        ):
             collider.update({0: POSES[0]})
         with self.assertRaises(ValueError):
             collider.run([[float("nan")] * 7] * 2)
@@ -92,28 +116,55 @@ class Update(ColliderCase):
         nan = vertices.copy()
         nan[3, 1] = float("nan")
         for poses, moved, kind, words in (
-                ({2: POSES[0]}, None, ValueError, "poses: 2 is not the number of a body; there are 2, numbered from 0"), ({-1: POSES[0]}, None, ValueError, "poses: -1 is not the number of a body"),
-                ({"0": POSES[0]}, None, TypeError, "poses: type str; expected the number of a body"), ({1: POSES[0]}, None, ValueError, "poses: body 1 is deformable and has no pose"),
-                ({0: POSES[0][:6]}, None, ValueError, r"poses of body 0: shape \(6,\); expected \(7,\) or \(4, 4\)"), ({0: POSES}, None, ValueError, r"poses of body 0: shape \(2, 7\)"),
-                ({0: [0, 0, 0, 0, 0, 0, 0]}, None, ValueError, "poses: row 0 has no rotation"), ({0: [0, float("nan"), 0, 1, 0, 0, 0]}, None, ValueError, "poses: row 0 is not finite"),
-                ({0: [1e37, 0, 0, 1, 0, 0, 0]}, None, ValueError, "body 0 has a coordinate of 1e"), ({0: 2 * numpy.eye(4)}, None, ValueError, "poses of body 0: matrix 0 has another last row"),
-                (POSES, None, TypeError, "poses: type list; expected a mapping {body: array}"), (None, [vertices], TypeError, "vertices: type list; expected a mapping"),
-                (None, {0: vertices}, ValueError, "vertices: body 0 is not deformable"), (None, {1: vertices[1:]}, ValueError, "rows for body 1, whose mesh has"),
-                (None, {1: nan}, ValueError, "body 1: vertex 3 is not finite"), (None, {1: vertices[:, :2]}, ValueError, r"vertices of body 1: shape \(.*, 2\)"),
-                ({0: [5, 0, 0, 1, 0, 0, 0]}, {1: nan}, ValueError, "vertex 3 is not finite")):
+            (
+                {2: POSES[0]},
+                None,
+                ValueError,
+                "poses: 2 is not the number of a body; there are 2, numbered from 0",
+            ),
+            ({-1: POSES[0]}, None, ValueError, "poses: -1 is not the number of a body"),
+            ({"0": POSES[0]}, None, TypeError, "poses: type str; expected the number of a body"),
+            ({1: POSES[0]}, None, ValueError, "poses: body 1 is deformable and has no pose"),
+            (
+                {0: POSES[0][:6]},
+                None,
+                ValueError,
+                r"poses of body 0: shape \(6,\); expected \(7,\) or \(4, 4\)",
+            ),
+            ({0: POSES}, None, ValueError, r"poses of body 0: shape \(2, 7\)"),
+            ({0: [0, 0, 0, 0, 0, 0, 0]}, None, ValueError, "poses: row 0 has no rotation"),
+            ({0: [0, float("nan"), 0, 1, 0, 0, 0]}, None, ValueError, "poses: row 0 is not finite"),
+            ({0: [1e37, 0, 0, 1, 0, 0, 0]}, None, ValueError, "body 0 has a coordinate of 1e"),
+            ({0: 2 * numpy.eye(4)}, None, ValueError, "poses of body 0: matrix 0 has another last row"),
+            (POSES, None, TypeError, "poses: type list; expected a mapping {body: array}"),
+            (None, [vertices], TypeError, "vertices: type list; expected a mapping"),
+            (None, {0: vertices}, ValueError, "vertices: body 0 is not deformable"),
+            (None, {1: vertices[1:]}, ValueError, "rows for body 1, whose mesh has"),
+            (None, {1: nan}, ValueError, "body 1: vertex 3 is not finite"),
+            (None, {1: vertices[:, :2]}, ValueError, r"vertices of body 1: shape \(.*, 2\)"),
+            ({0: [5, 0, 0, 1, 0, 0, 0]}, {1: nan}, ValueError, "vertex 3 is not finite"),
+        ):
             with self.subTest(words), self.assertRaisesRegex(kind, words) as caught:
                 collider.update(poses, moved)
             self.assertNotIn("\n", str(caught.exception))
             self.expect_equal(collider.update(), right)
-        for call in (lambda: collider.run({0: POSES[0]}), lambda: tandem.Collider(self.meshes, algorithm="auto").tune({0: POSES[0]})):
-            with self.assertRaisesRegex(TypeError, r"poses: is a mapping of some bodies, which update\(\) takes; give all bodies"):
+        for call in (
+            lambda: collider.run({0: POSES[0]}),
+            lambda: tandem.Collider(self.meshes, algorithm="auto").tune({0: POSES[0]}),
+        ):
+            with self.assertRaisesRegex(
+                TypeError, r"poses: is a mapping of some bodies, which update\(\) takes; give all bodies"
+            ):
                 call()
 
     def test_frames_of_the_device_are_refused(self):
         collider = self.collider()
         collider.run(POSES)
         collider._core.run_device_input(numpy.array(POSES), [])
-        with self.assertRaisesRegex(ValueError, r"arrays of the last run were on the device; write the changes there, and give the arrays to run\(\)"):
+        with self.assertRaisesRegex(
+            ValueError,
+            r"arrays of the last run were on the device; write the changes there, and give the arrays to run\(\)",
+        ):
             collider.update({0: POSES[0]})
         right = collider.run(POSES)
         self.expect_equal(collider.update(), right)

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """compare.py PROGRAM SOURCE: the command `tandem compare`, on records derived from a committed one."""
+
 import copy
 import json
 import subprocess
@@ -13,11 +14,15 @@ LINE = json.loads((SOURCE / "results/h200/plates.jsonl").read_text().split("\n",
 
 
 def record(factor=1.0, samples=9, k="8", commit="aaaa11112222", session=None):
-    """The committed record with samples around 10 ms times `factor`, 0.1 % apart; with a session it has schema 3."""
+    """The committed record with samples around 10 ms times `factor`, 0.1 % apart; with a session it has
+    schema 3."""
     made = copy.deepcopy(LINE)
     made["key"] = made["key"].replace(",k=8,", f",k={k},")
     made["settings"]["k"] = k
-    made["total_ns"] = {"samples": [round(1e7 * factor * (1 + 0.001 * (i * 7 % 11))) for i in range(samples)], "frames": []}
+    made["total_ns"] = {
+        "samples": [round(1e7 * factor * (1 + 0.001 * (i * 7 % 11))) for i in range(samples)],
+        "frames": [],
+    }
     made["environment"]["commit"] = commit
     made["schema"] = 2
     if session:
@@ -52,7 +57,10 @@ class Compare(Case):
 
     def test_slower_and_faster(self):
         old, new = self.write(record(), record(k="18")), self.write(record(1.05), record(k="18"))
-        for a, b, word, count in ((old, new, "slower", "1 of 2 cells slower, 0 faster"), (new, old, "faster", "0 of 2 cells slower, 1 faster")):
+        for a, b, word, count in (
+            (old, new, "slower", "1 of 2 cells slower, 0 faster"),
+            (new, old, "faster", "0 of 2 cells slower, 1 faster"),
+        ):
             out = self.compared(a, b, code=1)
             self.assertIn(count, out.splitlines()[-1])
             self.assertIn(f" {word} ", next(line for line in out.splitlines() if line.startswith("k=8 ")))
@@ -74,8 +82,12 @@ class Compare(Case):
             cell = self.json_of(old, new, code=1)["cells"][0]
             self.assertEqual((cell["paired"], cell["common_rounds"]), (paired, 9 if paired else None))
             self.assertAlmostEqual(cell["times"]["p"], 2 / 2**9 if paired else 2 / 48620)
-            self.assertEqual("1 of 1 cells were measured in separate runs" in self.compared(old, new, code=1), not paired)
-            self.assertEqual((cell["old"]["session"], cell["new"]["session"], cell["old"]["seed"]), ("s", session, 1))
+            self.assertEqual(
+                "1 of 1 cells were measured in separate runs" in self.compared(old, new, code=1), not paired
+            )
+            self.assertEqual(
+                (cell["old"]["session"], cell["new"]["session"], cell["old"]["seed"]), ("s", session, 1)
+            )
 
     def test_another_answer(self):
         other = record(2)
@@ -92,40 +104,68 @@ class Compare(Case):
         self.assertEqual(record()["frames"], {"first": 20, "last": 121})
         out = self.compared(old, new)
         self.assertIn("ms   milliseconds a frame", out)
-        self.assertEqual(next(line for line in out.splitlines() if line.startswith("chunked ")).split()[1], "0.09853")  # 10.05 ms / 102 frames
+        self.assertEqual(
+            next(line for line in out.splitlines() if line.startswith("chunked ")).split()[1], "0.09853"
+        )  # 10.05 ms / 102 frames
         cell = self.json_of(old, new)["cells"][0]
         self.assertEqual(cell["old"]["frame_ns"], cell["old"]["median_ns"] / 102)
 
     def test_a_change_in_disturbed_rounds_only(self):
         disturbed = record(1.5, session="t")
-        disturbed["conditions"] = {"disturbed": [{"round": number, "why": "busy: other processes use 1.0 of 2 cores"} for number in range(9)]}
+        disturbed["conditions"] = {
+            "disturbed": [
+                {"round": number, "why": "busy: other processes use 1.0 of 2 cores"} for number in range(9)
+            ]
+        }
         old, new = self.write(record(session="s")), self.write(disturbed)
         out = self.compared(old, new).replace("\n  ", " ")
         self.assertIn(" disturbed ", next(line for line in out.splitlines() if line.startswith("chunked ")))
         self.assertIn("new: 9 of 9 rounds are disturbed (busy: other processes use 1.0 of 2 cores)", out)
         self.assertIn("1 changed in disturbed rounds only", out)
         found = self.json_of(old, new, "--strict", code=1)
-        self.assertEqual((found["cells"][0]["verdict"], found["changed"], found["cells"][0]["new"]["disturbed_rounds"]), ("disturbed", False, 9))
+        self.assertEqual(
+            (found["cells"][0]["verdict"], found["changed"], found["cells"][0]["new"]["disturbed_rounds"]),
+            ("disturbed", False, 9),
+        )
         self.compared(old, old, "--strict")
 
     def test_too_few_samples(self):
         out = self.compared(self.write(record(samples=3)), self.write(record(9, samples=3)))
         self.assertIn("too few samples to tell", out)
-        self.assertIn("1 has too few samples to tell: 4 rounds on each side are enough", out.replace("\n  ", " "))
+        self.assertIn(
+            "1 has too few samples to tell: 4 rounds on each side are enough", out.replace("\n  ", " ")
+        )
 
     def test_few_rounds_have_no_interval(self):
-        """One round against one, and 12 against 1: the test rejects no ratio, also at a level at which it could show a change."""
+        """One round against one, and 12 against 1: the test rejects no ratio, also at a level at which it
+        could show a change."""
         for old, new, level in ((1, 1, 0.05), (12, 1, 0.05), (3, 3, 0.35), (12, 1, 0.35)):
-            files = self.write(record(samples=old), record(k="18")), self.write(record(2, samples=new), record(k="18"))
+            files = (
+                self.write(record(samples=old), record(k="18")),
+                self.write(record(2, samples=new), record(k="18")),
+            )
             code = 1 if level > 0.05 else 0
             out = self.compared(*files, "--level", level, code=code)
-            row, other = (next(line for line in out.splitlines() if line.startswith(name)) for name in ("k=8 ", "k=18 "))
+            row, other = (
+                next(line for line in out.splitlines() if line.startswith(name)) for name in ("k=8 ", "k=18 ")
+            )
             self.assertRegex(row, r"  (2\.0|1\.9)\d\d - ")
             self.assertRegex(other, r"  1\.000 \[0\.99\d, 1\.00\d\] ")
-            self.assertEqual(out.replace("\n  ", " ").count("1 of 2 cells has no interval (-): so few rounds exclude no ratio with 95 % confidence"), 1)
-            self.assertRegex(self.compared(*files, "--format", "markdown", "--level", level, code=code), r"\| (2\.0|1\.9)\d\d - \|")
+            self.assertEqual(
+                out.replace("\n  ", " ").count(
+                    "1 of 2 cells has no interval (-): so few rounds exclude no ratio with 95 % confidence"
+                ),
+                1,
+            )
+            self.assertRegex(
+                self.compared(*files, "--format", "markdown", "--level", level, code=code),
+                r"\| (2\.0|1\.9)\d\d - \|",
+            )
             times = self.json_of(*files, "--level", level, code=code)["cells"][0]["times"]
-            self.assertEqual((times["low"], times["high"], times["log_error"], times["least_effect"]), (None, None, None, None))
+            self.assertEqual(
+                (times["low"], times["high"], times["log_error"], times["least_effect"]),
+                (None, None, None, None),
+            )
             self.assertAlmostEqual(times["ratio"], 2, delta=0.02)
         page = self.work / "page.html"
         self.assertEqual(tandem("report", files[1], "--against", files[0], "-o", page)[0], 0)
@@ -133,16 +173,23 @@ class Compare(Case):
 
     def test_commits_of_one_file(self):
         both = self.write(record(), record(1.5, commit="bbbb11112222"), record(1, commit="bbbc11112222"))
-        for old, new, *more in ((f"{both}@aaaa", f"{both}@bbbb"), (both, both, "--commit-old", "aaaa", "--commit-new", "bbbb"),
-                                (f"{both}@aaaa", both, "--commit-new", "bbbb")):
+        for old, new, *more in (
+            (f"{both}@aaaa", f"{both}@bbbb"),
+            (both, both, "--commit-old", "aaaa", "--commit-new", "bbbb"),
+            (f"{both}@aaaa", both, "--commit-new", "bbbb"),
+        ):
             found = self.json_of(old, new, *more, code=1)
-            self.assertEqual((found["old"]["commits"], found["new"]["commits"]), (["aaaa11112222"], ["bbbb11112222"]))
+            self.assertEqual(
+                (found["old"]["commits"], found["new"]["commits"]), (["aaaa11112222"], ["bbbb11112222"])
+            )
         self.bad(["no record of commit cccc", "aaaa11112222"], "compare", both, f"{both}@cccc")
         self.bad("may be bbbb11112222 or bbbc11112222", "compare", both, f"{both}@bbb")
         self.bad("name one commit", "compare", both, f"{both}@aaaa", "--commit-new", "bbbb")
         out = self.compared(both, both)
         self.assertIn("old and new are the same records", out)
-        self.assertIn("1 cell was recorded more than once; the last record that is ok counts", out.replace("\n  ", " "))
+        self.assertIn(
+            "1 cell was recorded more than once; the last record that is ok counts", out.replace("\n  ", " ")
+        )
 
     def test_excluded_records_are_reported(self):
         failed, wrong = record(k="26"), record(k="14")
@@ -150,11 +197,18 @@ class Compare(Case):
         wrong["status"] = "wrong"
         old, new = self.write(record(), record(k="18")), self.write(record(), failed, wrong, record(k="24"))
         out = self.compared(old, new)
-        for words in (f"{new}:2 is left out: k=26: failed: device lost", f"{new}:3 is left out: k=14: its answer is not",
-                      "1 cell is in old only: k=18", "1 cell is in new only: k=24", "0 of 1 cell slower"):
+        for words in (
+            f"{new}:2 is left out: k=26: failed: device lost",
+            f"{new}:3 is left out: k=14: its answer is not",
+            "1 cell is in old only: k=18",
+            "1 cell is in new only: k=24",
+            "0 of 1 cell slower",
+        ):
             self.assertIn(words, out.replace("\n  ", " "))
         found = self.json_of(old, new)
-        self.assertEqual([(r["line"], r["status"]) for r in found["new"]["left_out"]], [(2, "failed"), (3, "wrong")])
+        self.assertEqual(
+            [(r["line"], r["status"]) for r in found["new"]["left_out"]], [(2, "failed"), (3, "wrong")]
+        )
         self.assertEqual([len(found[side]["only_here"]) for side in ("old", "new")], [1, 1])
         self.bad("none of 2 records is ok and has samples", "compare", self.write(failed, wrong), new)
 
@@ -178,18 +232,37 @@ class Compare(Case):
         less = record()
         del less["devices"]
         ceilings = SOURCE / "results/h200/ceilings.jsonl"
-        for path, words in ((self.work / "none.jsonl", "cannot be read"), (folder, "is a folder"), (empty, "is empty"),
-                            (noise, f"{noise}:2: is not JSON"), (self.write(record(), newer), ":2: a record of schema 5"),
-                            (self.write(older), "scripts/convert_records"), (self.write(less), ":1: is no record of a cell"),
-                            (ceilings, f"{ceilings}:1: is no record of a cell")):
+        for path, words in (
+            (self.work / "none.jsonl", "cannot be read"),
+            (folder, "is a folder"),
+            (empty, "is empty"),
+            (noise, f"{noise}:2: is not JSON"),
+            (self.write(record(), newer), ":2: a record of schema 5"),
+            (self.write(older), "scripts/convert_records"),
+            (self.write(less), ":1: is no record of a cell"),
+            (ceilings, f"{ceilings}:1: is no record of a cell"),
+        ):
             self.bad(words, "compare", good, path)
             self.bad(words, "compare", path, good)
-        self.bad(["have no cell in common", "the nearest differ in k=8 / k=18)"], "compare", good, self.write(record(k="18")))
+        self.bad(
+            ["have no cell in common", "the nearest differ in k=8 / k=18)"],
+            "compare",
+            good,
+            self.write(record(k="18")),
+        )
 
     def test_bad_use(self):
         good = self.write(record())
-        for arguments in ((), (good,), (good, good, good), (good, good, "--threshold", "-1"), (good, good, "--threshold", "x"),
-                          (good, good, "--level", "0"), (good, good, "--level", "0.6"), (good, good, "--format", "xml")):
+        for arguments in (
+            (),
+            (good,),
+            (good, good, good),
+            (good, good, "--threshold", "-1"),
+            (good, good, "--threshold", "x"),
+            (good, good, "--level", "0"),
+            (good, good, "--level", "0.6"),
+            (good, good, "--format", "xml"),
+        ):
             self.bad("", "compare", *arguments)
 
     def test_formats(self):
@@ -200,7 +273,18 @@ class Compare(Case):
         self.assertEqual(len(rows), 4)
         self.assertEqual({row.count("|") for row in rows}, {8})
         found = self.json_of(old, new, code=1)
-        self.assertEqual(found["verdicts"], {"slower": 1, "faster": 0, "within_threshold": 0, "not_shown": 1, "too_few": 0, "disturbed": 0, "another_answer": 0})
+        self.assertEqual(
+            found["verdicts"],
+            {
+                "slower": 1,
+                "faster": 0,
+                "within_threshold": 0,
+                "not_shown": 1,
+                "too_few": 0,
+                "disturbed": 0,
+                "another_answer": 0,
+            },
+        )
         self.assertTrue(found["changed"])
         self.assertEqual([c["key"] for c in found["cells"]], [record()["key"], record(k="18")["key"]])
         self.assertIn(found["summary"], " ".join(text.split()))
@@ -211,7 +295,10 @@ class Compare(Case):
     def test_other_devices_are_reported(self):
         new = record()
         new["devices"][0]["name"] = "NVIDIA A100"
-        self.assertIn("other models: old NVIDIA H200, new NVIDIA A100", self.compared(self.write(record()), self.write(new)))
+        self.assertIn(
+            "other models: old NVIDIA H200, new NVIDIA A100",
+            self.compared(self.write(record()), self.write(new)),
+        )
 
     def test_committed_records(self):
         for name in ("plates", "pile", "tiled", "submissions"):
@@ -224,7 +311,9 @@ class Compare(Case):
     def test_unwritable_output(self):
         path = self.write(record())
         with open("/dev/full", "w") as full:
-            done = subprocess.run([str(PROGRAM), "compare", path, path], stdout=full, stderr=subprocess.PIPE, text=True)
+            done = subprocess.run(
+                [str(PROGRAM), "compare", path, path], stdout=full, stderr=subprocess.PIPE, text=True
+            )
         self.assertEqual((done.returncode, done.stderr.count("\n")), (3, 1), done.stderr)
         self.assertIn("standard output could not be written", done.stderr)
 

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""comparison.py PROGRAM SOURCE: reading records for comparison, labels of cells, verdicts, and the rates of false
-and missed changes in synthetic records."""
+"""comparison.py PROGRAM SOURCE: reading records for comparison, labels of cells, verdicts, and the rates of
+false and missed changes in synthetic records."""
+
 import json
 import math
 import pathlib
@@ -20,13 +21,26 @@ from tandem.comparison import cells, matching, naming, notes, texts  # noqa: E40
 
 
 def record(key="8", samples=(1,), rounds=None, session=None):
-    """A record of schema 2 with only the fields that a comparison reads; with rounds and a session of schema 3."""
+    """A record of schema 2 with only the fields that a comparison reads; with rounds and a session of schema
+    3."""
     digest = {"count": 3, "a": "0a", "b": "0b"}
-    made = {"schema": 2, "key": key, "status": "ok", "failure": None, "algorithm": "chunked", "preset": "resident",
-            "settings": {"k": key, "rounding": "safe"}, "scene": {"key": "pile:bodies=2,density=0.4", "digest": "00ff"}, "frames": {"first": 0, "last": 9},
-            "devices": [{"id": "cuda:0", "name": "GPU", "driver": "1", "kind": "gpu"}], "total_ns": {"samples": list(samples)},
-            "work": {"digest": dict(digest), "contact_digest": dict(digest)}, "agreement": None, "error": None,
-            "environment": {"commit": "abc1", "dirty": False, "processor": None}}
+    made = {
+        "schema": 2,
+        "key": key,
+        "status": "ok",
+        "failure": None,
+        "algorithm": "chunked",
+        "preset": "resident",
+        "settings": {"k": key, "rounding": "safe"},
+        "scene": {"key": "pile:bodies=2,density=0.4", "digest": "00ff"},
+        "frames": {"first": 0, "last": 9},
+        "devices": [{"id": "cuda:0", "name": "GPU", "driver": "1", "kind": "gpu"}],
+        "total_ns": {"samples": list(samples)},
+        "work": {"digest": dict(digest), "contact_digest": dict(digest)},
+        "agreement": None,
+        "error": None,
+        "environment": {"commit": "abc1", "dirty": False, "processor": None},
+    }
     if session:
         made |= {"schema": 3, "session": session, "sampling": {"seed": 7}}
         made["total_ns"]["rounds"] = list(range(len(samples)) if rounds is None else rounds)
@@ -72,21 +86,25 @@ class Files(unittest.TestCase):
 
 class Reading(Files):
     def test_rounds_are_medians_of_their_samples(self):
-        cell, = self.read(record("8", [5, 1, 9, 4, 2, 30], [2, 1, 2, 1, 1, 2], "s")).cells
+        (cell,) = self.read(record("8", [5, 1, 9, 4, 2, 30], [2, 1, 2, 1, 1, 2], "s")).cells
         self.assertEqual(list(cell.rounds.items()), [(1, 2), (2, 9)])
         self.assertEqual((cell.samples, cell.session, cell.seed, cell.on_gpus), (6, "s", 7, True))
 
     def test_without_rounds_every_sample_is_one(self):
-        cell, = self.read(record("8", [5, 1, 9])).cells
+        (cell,) = self.read(record("8", [5, 1, 9])).cells
         self.assertEqual(cell.times(), [5, 1, 9])
         self.assertEqual((cell.session, cell.seed), ("", None))
 
     def test_the_last_record_that_is_ok_counts(self):
         failed = record("8") | {"status": "failed", "failure": "device lost", "total_ns": None, "work": None}
         read = self.read(record("8"), record("18", [2]), record("8", [3]), failed, record("26", []))
-        self.assertEqual([(cell.key, cell.line, cell.times()) for cell in read.cells], [("8", 3, [3]), ("18", 2, [2])])
+        self.assertEqual(
+            [(cell.key, cell.line, cell.times()) for cell in read.cells], [("8", 3, [3]), ("18", 2, [2])]
+        )
         self.assertEqual((read.repeated, read.records), (1, 5))
-        self.assertEqual([(cell.key, cell.failure) for cell in read.left_out], [("8", "device lost"), ("26", "")])
+        self.assertEqual(
+            [(cell.key, cell.failure) for cell in read.left_out], [("8", "device lost"), ("26", "")]
+        )
 
     def test_commits_are_found_by_their_beginnings(self):
         records = [record("8", [ns]) for ns in (1, 2, 3)]
@@ -121,13 +139,33 @@ class Reading(Files):
     def test_refuses_other_schemas_and_fields(self):
         def refused(words, **change):
             self.refused(words, self.write(record("8", [1, 2], session="s") | change))
+
         refused("scripts/convert_records", schema=1)
         refused("a record of schema 5", schema=5)
-        for change in ({"schema": "2"}, {"devices": 3}, {"environment": None}, {"settings": {"k": 8}}, {"scene": {}}, {"frames": []}, {"work": {"digest": 3}},
-                       {"error": {"inputs": 7}}, {"sampling": 3}, {"session": 5}, {"algorithm": 5}, {"preset": None}, {"frames": {"first": "0", "last": 9}}, {"frames": {"first": True, "last": 9}},
-                       {"scene": {"key": 3, "digest": ""}}, {"scene": {"key": "pile", "digest": 3}}, {"work": {"digest": {"count": "3", "a": "", "b": ""}}},
-                       {"work": {"digest": {"count": 3, "a": [], "b": ""}}}, {"environment": {"dirty": 0}},
-                       {"devices": [{"id": 0, "name": "", "driver": "", "kind": "gpu"}]}, {"total_ns": 4}, {"total_ns": {"samples": ["a"], "rounds": [0]}}):
+        for change in (
+            {"schema": "2"},
+            {"devices": 3},
+            {"environment": None},
+            {"settings": {"k": 8}},
+            {"scene": {}},
+            {"frames": []},
+            {"work": {"digest": 3}},
+            {"error": {"inputs": 7}},
+            {"sampling": 3},
+            {"session": 5},
+            {"algorithm": 5},
+            {"preset": None},
+            {"frames": {"first": "0", "last": 9}},
+            {"frames": {"first": True, "last": 9}},
+            {"scene": {"key": 3, "digest": ""}},
+            {"scene": {"key": "pile", "digest": 3}},
+            {"work": {"digest": {"count": "3", "a": "", "b": ""}}},
+            {"work": {"digest": {"count": 3, "a": [], "b": ""}}},
+            {"environment": {"dirty": 0}},
+            {"devices": [{"id": 0, "name": "", "driver": "", "kind": "gpu"}]},
+            {"total_ns": 4},
+            {"total_ns": {"samples": ["a"], "rounds": [0]}},
+        ):
             refused(":1: is no record of a cell (", **change)
         refused("a sample of 0 ns is not a valid time", total_ns={"samples": [0], "rounds": [0]})
         refused("2 samples and 1 rounds", total_ns={"samples": [1, 2], "rounds": [0]})
@@ -142,8 +180,18 @@ class Naming(Files):
         records = [record(key) for key in ("8", "18", "9", "10")]
         records[2]["algorithm"] = "tiled"
         records[3]["scene"]["key"], records[3]["settings"]["k"] = "pile:bodies=9,density=0.4", "8"
-        self.assertEqual(self.labels(*records), (["chunked bodies=2 k=8", "chunked bodies=2 k=18", "tiled bodies=2 k=9", "chunked bodies=9 k=8"],
-                                                 "resident, cuda:0, GPU, 1, pile, frames 0:9"))
+        self.assertEqual(
+            self.labels(*records),
+            (
+                [
+                    "chunked bodies=2 k=8",
+                    "chunked bodies=2 k=18",
+                    "tiled bodies=2 k=9",
+                    "chunked bodies=9 k=8",
+                ],
+                "resident, cuda:0, GPU, 1, pile, frames 0:9",
+            ),
+        )
 
     def test_one_cell_and_cells_that_differ_only_in_keys(self):
         self.assertEqual(self.labels(record())[0], ["chunked"])
@@ -157,9 +205,20 @@ class Naming(Files):
 
 class Verdicts(Files):
     def test_thresholds_are_the_same_both_ways(self):
-        for factor, verdict in ((1, "not_shown"), (1.009, "within_threshold"), (1 / 1.009, "within_threshold"), (1.011, "slower"), (1 / 1.011, "faster")):
+        for factor, verdict in (
+            (1, "not_shown"),
+            (1.009, "within_threshold"),
+            (1 / 1.009, "within_threshold"),
+            (1.011, "slower"),
+            (1 / 1.011, "faster"),
+        ):
             self.assertEqual(self.verdict(factor), verdict, factor)
-        for factor, verdict in ((1.19, "within_threshold"), (1.21, "slower"), (1 / 1.19, "within_threshold"), (1 / 1.21, "faster")):
+        for factor, verdict in (
+            (1.19, "within_threshold"),
+            (1.21, "slower"),
+            (1 / 1.19, "within_threshold"),
+            (1 / 1.21, "faster"),
+        ):
             self.assertEqual(self.verdict(factor, threshold=0.2), verdict, factor)
         # 2 / 48620 is the smallest p-value of 9 against 9.
         self.assertEqual(self.verdict(1.21, level=1e-5), "too_few")
@@ -184,16 +243,25 @@ class Verdicts(Files):
         self.assertGreater(cell.least_effect, 0.1)
 
     def test_only_common_rounds_are_pairs(self):
-        cell, _ = self.compared([record("8", [10, 20, 30, 1000], [1, 2, 3, 9], "s")], [record("8", [5, 22, 33, 40], [0, 2, 3, 4], "s")])
+        cell, _ = self.compared(
+            [record("8", [10, 20, 30, 1000], [1, 2, 3, 9], "s")],
+            [record("8", [5, 22, 33, 40], [0, 2, 3, 4], "s")],
+        )
         self.assertEqual((cell.common, cell.before_ns), (2, 25))
         self.assertAlmostEqual(cell.ratio.value, 1.1, places=12)
-        self.assertFalse(self.compared([record("8", [10, 20], [1, 2], "s")], [record("8", [5, 22], [3, 4], "s")])[0].paired)
+        self.assertFalse(
+            self.compared([record("8", [10, 20], [1, 2], "s")], [record("8", [5, 22], [3, 4], "s")])[0].paired
+        )
 
     def test_a_round_counts_once_however_many_samples_it_has(self):
         rounds = [number for number in range(3) for _ in range(50)]
         samples = [1e6 + i % 50 for i in range(150)]
-        cell, found = self.compared([record("8", samples, rounds, "s")], [record("8", [2 * ns for ns in samples], rounds, "t")])
-        self.assertEqual((cell.verdict, cell.rounds_needed, cell.p_holm, found[2].changed), ("too_few", 4, None, False))
+        cell, found = self.compared(
+            [record("8", samples, rounds, "s")], [record("8", [2 * ns for ns in samples], rounds, "t")]
+        )
+        self.assertEqual(
+            (cell.verdict, cell.rounds_needed, cell.p_holm, found[2].changed), ("too_few", 4, None, False)
+        )
         self.assertAlmostEqual(cell.least_p, 0.1, places=15)
 
     def test_too_few_follows_from_the_corrected_level(self):
@@ -211,7 +279,9 @@ class Verdicts(Files):
         records = [record(key, around(1, 9)) for key in ("8", "18", "26")]
         cell, _ = self.compared(records, records)
         self.assertGreater(cell.ratio.log_error, 0)
-        self.assertAlmostEqual(cell.least_effect, matching.least_effect(cell.ratio.log_error, 0.05 / 3), places=15)
+        self.assertAlmostEqual(
+            cell.least_effect, matching.least_effect(cell.ratio.log_error, 0.05 / 3), places=15
+        )
 
     def test_another_answer_is_not_timed(self):
         for digest, what in (("digest", "candidate pairs"), ("contact_digest", "contacts")):
@@ -221,7 +291,10 @@ class Verdicts(Files):
             self.assertEqual((cell.verdict, found[2].changed, found[2].tested), ("another_answer", True, 0))
             self.assertIn(f"3 {what}, but different ones", texts.text(*found, 0.05))
         # Old records have digests of the comparison with the reference.
-        old = record("8", around(1, 9)) | {"agreement": {"digest": {"count": 4, "a": "0a", "b": "0b"}}, "work": {}}
+        old = record("8", around(1, 9)) | {
+            "agreement": {"digest": {"count": 4, "a": "0a", "b": "0b"}},
+            "work": {},
+        }
         new = [record("8", around(1, 9))]
         self.assertEqual(self.compared([old], new)[0].verdict, "another_answer")
         self.assertEqual(self.compared([old | {"agreement": None}], new)[0].verdict, "not_shown")
@@ -231,11 +304,22 @@ class Verdicts(Files):
             with self.assertRaises(lines.RecordError) as caught:
                 self.compared([old], [new])
             self.assertIn(words, str(caught.exception))
+
         expect("(1 and 1 cells; the nearest differ in k=8 / k=18)", record("8"), record("18"))
+
         def on(devices, k="8"):
             return record(k) | {"key": f"tiled|{devices}|pile@0a|0:9|k={k}"}
-        expect("(1 and 1 cells; the nearest differ in host:CPU x1 / host:CPU x2)", on("host:CPU x1, g++ 12"), on("host:CPU x2, g++ 12"))
-        expect("differ in g++ 12 / g++ 13, k=8 / k=18)", on("host:CPU x1, g++ 12"), on("host:CPU x1, g++ 13", "18"))
+
+        expect(
+            "(1 and 1 cells; the nearest differ in host:CPU x1 / host:CPU x2)",
+            on("host:CPU x1, g++ 12"),
+            on("host:CPU x2, g++ 12"),
+        )
+        expect(
+            "differ in g++ 12 / g++ 13, k=8 / k=18)",
+            on("host:CPU x1, g++ 12"),
+            on("host:CPU x1, g++ 13", "18"),
+        )
         expect("none of 1 records is ok", record("8"), record("18") | {"status": "wrong"})
         expect("schemas 2 and 3", record("8"), record("18", [1], [0], "s"))
 
@@ -247,7 +331,12 @@ class Verdicts(Files):
         made = notes.notes(*found)
         self.assertEqual(sum("is left out" in note for note in made), 10)
         self.assertTrue(any("5 more records are left out" in note for note in made))
-        self.assertTrue(any(note.startswith("8 cells are in old only: ") and note.endswith("; and 3 more") for note in made))
+        self.assertTrue(
+            any(
+                note.startswith("8 cells are in old only: ") and note.endswith("; and 3 more")
+                for note in made
+            )
+        )
 
 
 class Rates(unittest.TestCase):
@@ -255,12 +344,18 @@ class Rates(unittest.TestCase):
     share, and a change of the first cell alone."""
 
     def setUp(self):
-        # Results depend on ranks and on the ratio's value; computing its interval would take most of the time.
+        # Results depend on ranks and on the ratio's value; computing its interval would take most of the
+        # time.
         def value_of(before, after):
-            return resampling.Ratio(float(numpy.exp(numpy.median(numpy.log(after)) - numpy.median(numpy.log(before)))), 1, 1, 0.01)
+            return resampling.Ratio(
+                float(numpy.exp(numpy.median(numpy.log(after)) - numpy.median(numpy.log(before)))), 1, 1, 0.01
+            )
 
         def paired(before, after):
-            return resampling.Ratio(float(numpy.exp(numpy.median(numpy.log(numpy.divide(after, before))))), 1, 1, 0.01)
+            return resampling.Ratio(
+                float(numpy.exp(numpy.median(numpy.log(numpy.divide(after, before))))), 1, 1, 0.01
+            )
+
         for name, cheap in (("unpaired_ratio", value_of), ("paired_ratio", paired)):
             patch = mock.patch.object(matching.resampling, name, cheap)
             patch.start()
@@ -270,17 +365,44 @@ class Rates(unittest.TestCase):
     def side(times, session):
         made = []
         for number, row in enumerate(times):
-            made.append(cells.RecordedCell(1, 3, str(number), "ok", "", {}, {}, 1, True, session, None, len(row), dict(enumerate(row)), None, None, "", "", False))
+            made.append(
+                cells.RecordedCell(
+                    1,
+                    3,
+                    str(number),
+                    "ok",
+                    "",
+                    {},
+                    {},
+                    1,
+                    True,
+                    session,
+                    None,
+                    len(row),
+                    dict(enumerate(row)),
+                    None,
+                    None,
+                    "",
+                    "",
+                    False,
+                )
+            )
         return cells.RecordedCells("", "", made, [], [], len(made), 0, False)
 
-    def found(self, start, times=2000, *, paired=False, cells_each=1, rounds=10, noise=0.02, drift=0.0, change=0.0):
+    def found(
+        self, start, times=2000, *, paired=False, cells_each=1, rounds=10, noise=0.02, drift=0.0, change=0.0
+    ):
         """The fraction of trials in which any change is reported, however small."""
         random, count = numpy.random.default_rng(start), 0
         for _ in range(times):
             shared = random.normal(0, drift, (cells_each, rounds))
-            before, after = (1e7 * numpy.exp(random.normal(0, noise, (cells_each, rounds)) + shared) for _ in range(2))
+            before, after = (
+                1e7 * numpy.exp(random.normal(0, noise, (cells_each, rounds)) + shared) for _ in range(2)
+            )
             after[0] *= math.exp(change)
-            matched = matching.match(self.side(before, "one"), self.side(after, "one" if paired else "two"), threshold=0)
+            matched = matching.match(
+                self.side(before, "one"), self.side(after, "one" if paired else "two"), threshold=0
+            )
             count += matched.changed
         return count / times
 
@@ -290,21 +412,26 @@ class Rates(unittest.TestCase):
         return 4 * math.sqrt(fraction * (1 - fraction) / times)
 
     def test_false_alarms_have_the_rate_of_the_tests(self):
-        for start, fraction, how in ((11, 50 / 1024, {"paired": True}),  # 10 pairs: 50 of 1,024 sets of signs
-                                  (12, 50 / 1024, {"paired": True, "drift": 0.2}),  # shared by both of a pair
-                                  (13, 0.0433, {})):  # 10 against 10, U of 23 or less
+        for start, fraction, how in (
+            (11, 50 / 1024, {"paired": True}),  # 10 pairs: 50 of 1,024 sets of signs
+            (12, 50 / 1024, {"paired": True, "drift": 0.2}),  # shared by both of a pair
+            (13, 0.0433, {}),
+        ):  # 10 against 10, U of 23 or less
             self.assertAlmostEqual(self.found(start, **how), fraction, delta=self.error(fraction, 2000))
 
     def test_many_cells_together_raise_no_more_false_alarms(self):
         for paired in (False, True):
-            self.assertLessEqual(self.found(14, 150, paired=paired, cells_each=20, rounds=12), 0.05 + self.error(0.05, 150))
+            self.assertLessEqual(
+                self.found(14, 150, paired=paired, cells_each=20, rounds=12), 0.05 + self.error(0.05, 150)
+            )
         # A change of one cell is found among 19 others.
         self.assertEqual(self.found(15, 20, paired=True, cells_each=20, rounds=12, change=0.2), 1)
 
     def test_the_least_effect_is_found_four_times_of_five(self):
         """Rank tests use more of normal noise than medians do, so they detect the change more often."""
         for rounds in (8, 20):
-            # For normal noise, the variance of a median over that of a mean is pi / 2; two medians are subtracted.
+            # For normal noise, the variance of a median over that of a mean is pi / 2; two medians are
+            # subtracted.
             error = 0.02 * math.sqrt(math.pi / rounds)
             change = math.log1p(matching.least_effect(error, 0.05))
             for start, paired in ((16, True), (17, False)):

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""conformance_page.py PROGRAM SOURCE: scripts/conformance on device host, with this program, with one whose answers are
-wrong, one that finds no pairs, one that fails, and one that a driver ends."""
+"""conformance_page.py PROGRAM SOURCE: scripts/conformance on device host, with this program, with one whose
+answers are wrong, one that finds no pairs, one that fails, and one that a driver ends."""
+
 import json
 import subprocess
 import sys
@@ -35,8 +36,26 @@ sys.exit(done.returncode)
 class ConformancePage(Case):
     def conformance(self, program, *more):
         page = self.work / "page.md"
-        done = subprocess.run(["/usr/bin/python3", SOURCE / "scripts/conformance", "--program", program, "--device", "host", "--k", "8", "--algorithm", "tiled",
-                               "-o", page, *more], capture_output=True, text=True, check=False)
+        done = subprocess.run(
+            [
+                "/usr/bin/python3",
+                SOURCE / "scripts/conformance",
+                "--program",
+                program,
+                "--device",
+                "host",
+                "--k",
+                "8",
+                "--algorithm",
+                "tiled",
+                "-o",
+                page,
+                *more,
+            ],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
         return done.returncode, done.stdout, done.stderr, page.read_text() if page.exists() else ""
 
     def other(self, end=False, empty=False, crash=False):
@@ -67,7 +86,9 @@ class ConformancePage(Case):
         """The cells of the other algorithms are on the page."""
         code, text, errors, page = self.conformance(self.other(crash=True), "--algorithm", "tiled,leaf_query")
         self.assertEqual((code, errors), (1, ""), text)
-        self.assertIn("- k = 8, float; k = 8, double: leaf_query: the driver ended the process (SIGSEGV)", page)
+        self.assertIn(
+            "- k = 8, float; k = 8, double: leaf_query: the driver ended the process (SIGSEGV)", page
+        )
         self.assertRegex(page, r"\| host [^|]* \| float: k = 8; double: k = 8 \| 2 \| 2 \|")
 
     def test_an_empty_answer_shows_nothing(self):
@@ -76,21 +97,24 @@ class ConformancePage(Case):
         self.assertIn("| tiled | resident | no pairs | no pairs |", page)
 
     def test_columns_are_kept_and_digests_compared(self):
-        """A second call finds its columns; those of another device join the page, and a different digest is an error."""
+        """A second call finds its columns; those of another device join the page, and a different digest is
+        an error."""
         kept = self.work / "kept.json"
         self.assertEqual(self.conformance(PROGRAM, "--keep", kept)[0], 0)
         columns = kept.read_text()
         code, text, _, page = self.conformance(self.other(end=True), "--keep", kept)
         self.assertEqual((code, kept.read_text()), (0, columns), text)
         both = json.loads(columns)
-        (name, first), = both["results"].items()
+        ((name, first),) = both["results"].items()
         both["results"]["other device"] = first
         kept.write_text(json.dumps(both))
         code, _, _, page = self.conformance(PROGRAM, "--keep", kept)
         self.assertEqual(code, 0)
         self.assertIn("2 cells were right on two devices or more; their digests are equal in 2.", page)
         self.assertIn("| other device | float: k = 8; double: k = 8 | 2 | 2 |", page)
-        both["results"]["other device"] = {title: {**column, "digests": {"tiled resident": "{}"}} for title, column in first.items()}
+        both["results"]["other device"] = {
+            title: {**column, "digests": {"tiled resident": "{}"}} for title, column in first.items()
+        }
         kept.write_text(json.dumps(both))
         code, text, _, page = self.conformance(PROGRAM, "--keep", kept)
         self.assertEqual(code, 1)

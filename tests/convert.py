@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""convert.py PROGRAM SOURCE: tandem convert brings files of other formats to .vtu, which gives the answer of the same mesh in a format of
-tandem's own; bad files and outputs are refused in one line."""
+"""convert.py PROGRAM SOURCE: tandem convert brings files of other formats to .vtu, which gives the answer of
+the same mesh in a format of tandem's own; bad files and outputs are refused in one line."""
+
 import os
 import unittest
 
@@ -20,7 +21,21 @@ class Convert(Case):
         """Digests of pairs and contacts of two bodies of a mesh."""
         out = self.work / "answer.jsonl"
         out.unlink(missing_ok=True)
-        status, text, errors = tandem("run", "--mesh", path, "--mesh", path, *POSES, "--device", "host", "--algorithm", "tiled", "--out", out, "--quiet")
+        status, text, errors = tandem(
+            "run",
+            "--mesh",
+            path,
+            "--mesh",
+            path,
+            *POSES,
+            "--device",
+            "host",
+            "--algorithm",
+            "tiled",
+            "--out",
+            out,
+            "--quiet",
+        )
         self.assertEqual((status, errors), (0, []), text)
         [record] = self.records(out)
         self.assertGreater(record["work"]["candidate_pairs"][0], 0)
@@ -31,7 +46,9 @@ class Convert(Case):
         output.unlink(missing_ok=True)
         status, out, errors = tandem("convert", source, "-o", output)
         self.assertEqual((status, errors), (0, []), out)
-        self.assertEqual(out, f"{output}: {len(self.points)} vertices and {len(self.tets)} tetrahedra of {source}\n")
+        self.assertEqual(
+            out, f"{output}: {len(self.points)} vertices and {len(self.tets)} tetrahedra of {source}\n"
+        )
         return output
 
     def test_formats_of_meshio_give_the_same_answer(self):
@@ -47,8 +64,16 @@ class Convert(Case):
         expected = self.answer(gmsh(self.work / "own.msh", self.points, self.tets))
         vertices = "".join("%r %r %r\n" % tuple(point) for point in self.points)
         first, second = self.work / "a.tet", self.work / "b.tet"
-        first.write_text(f"tet {len(self.points)} {len(self.tets)}\n" + vertices + "".join("%d %d %d %d\n" % tuple(tet) for tet in self.tets))
-        second.write_text(f"{len(self.points)} vertices\n{len(self.tets)} tets\n" + vertices + "".join("4 %d %d %d %d\n" % tuple(tet) for tet in self.tets))
+        first.write_text(
+            f"tet {len(self.points)} {len(self.tets)}\n"
+            + vertices
+            + "".join("%d %d %d %d\n" % tuple(tet) for tet in self.tets)
+        )
+        second.write_text(
+            f"{len(self.points)} vertices\n{len(self.tets)} tets\n"
+            + vertices
+            + "".join("4 %d %d %d %d\n" % tuple(tet) for tet in self.tets)
+        )
         for path in (first, second):
             with self.subTest(path.name):
                 self.assertEqual(self.answer(self.converted(path)), expected)
@@ -61,16 +86,28 @@ class Convert(Case):
         """With properties and edges, as MeshLib writes them; numbers have gaps."""
         expected = self.answer(gmsh(self.work / "own.msh", self.points, self.tets))
         numbers = [7 + 3 * i for i in range(len(self.points))]
-        vertices = "".join(f"Vertex {n} %r %r %r {{rgb=(1 0 0)}}\r\n" % tuple(point) for n, point in zip(numbers, self.points))
-        tets = "".join(f"Tet {i} %d %d %d %d{{group=1}}\n" % tuple(numbers[v] for v in tet) for i, tet in enumerate(self.tets))
+        vertices = "".join(
+            f"Vertex {n} %r %r %r {{rgb=(1 0 0)}}\r\n" % tuple(point)
+            for n, point in zip(numbers, self.points)
+        )
+        tets = "".join(
+            f"Tet {i} %d %d %d %d{{group=1}}\n" % tuple(numbers[v] for v in tet)
+            for i, tet in enumerate(self.tets)
+        )
         source = self.work / "mesh.t"
         source.write_text(vertices + tets + "\nEdge 7 10 {sharp}\n")
         self.bad("tandem convert", "run", "--mesh", source)
         self.assertEqual(self.answer(self.converted(source)), expected)
         last = len(vertices.splitlines()) + 1
-        for wrong, message in (("Tet 0 7 10 13 14\n", f":{last}: there is no vertex 14 above"), ("Tet 0 7 10 13\n", f":{last}: is no line"),
-                               ("Tet 0 7 10 13 16 19\n", f":{last}: is no line"), ("Vertex 7 0 0 0\n", f":{last}: is no line"),
-                               ("Vertex 8 0 0\n", f":{last}: is no line"), ("Vertex 8 0 0 x\n", f":{last}: is no line"), ("Edge 7 10\n", "no tetrahedra")):
+        for wrong, message in (
+            ("Tet 0 7 10 13 14\n", f":{last}: there is no vertex 14 above"),
+            ("Tet 0 7 10 13\n", f":{last}: is no line"),
+            ("Tet 0 7 10 13 16 19\n", f":{last}: is no line"),
+            ("Vertex 7 0 0 0\n", f":{last}: is no line"),
+            ("Vertex 8 0 0\n", f":{last}: is no line"),
+            ("Vertex 8 0 0 x\n", f":{last}: is no line"),
+            ("Edge 7 10\n", "no tetrahedra"),
+        ):
             with self.subTest(wrong):
                 source.write_text(vertices + wrong)
                 self.bad(message, "convert", source, "-o", self.work / "x.vtu")

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 """extension.py PROGRAM SOURCE: a program with an additional algorithm, lbvh: listing, running, recording and
 checking it."""
+
 import json
 import sys
 import unittest
@@ -16,7 +17,7 @@ class Extension(Case):
     def test_it_is_listed(self):
         status, out, errors = tandem("algorithms")
         self.assertEqual((status, errors), (0, []))
-        own = out[out.index("\nlbvh: "):]
+        own = out[out.index("\nlbvh: ") :]
         for word in ("stored children", "resident", "rounding", OWN, "[candidate pairs]"):
             self.assertIn(word, own)
         status, out, errors = tandem("algorithms", "--json")
@@ -24,13 +25,17 @@ class Extension(Case):
         entries = {entry["name"]: entry for entry in json.loads(out)}
         self.assertEqual([name for name, entry in entries.items() if not entry["baseline"]][-1], "lbvh")
         self.assertLess({"chunked", "gproximity", "tiled"}, set(entries))
-        self.assertEqual([counter["name"] for counter in entries["lbvh"]["counters"]], ["bvtt_nodes", "seeds", OWN])
+        self.assertEqual(
+            [counter["name"] for counter in entries["lbvh"]["counters"]], ["bvtt_nodes", "seeds", OWN]
+        )
         self.assertNotIn("residency", [parameter["name"] for parameter in entries["lbvh"]["parameters"]])
         self.assertNotIn(OWN, json.dumps(entries["chunked"]))
 
     def test_it_is_run_and_recorded(self):
         out = self.work / "run.jsonl"
-        status, text, errors = tandem("run", SCENE, "--algorithm", "chunked,lbvh", "--device", "host", "--repeat", 1, "--out", out)
+        status, text, errors = tandem(
+            "run", SCENE, "--algorithm", "chunked,lbvh", "--device", "host", "--repeat", 1, "--out", out
+        )
         self.assertEqual((status, errors), (0, []), text)
         self.assertEqual(text.count(": right: "), 2, text)
         self.assertRegex(text, r"(?m)^lbvh resident on host +\d")
@@ -48,7 +53,9 @@ class Extension(Case):
 
     def test_it_is_checked(self):
         devices = ("host", "opencl:0")
-        status, out, errors = tandem("check", SCENE, "--device", ",".join(devices), "--preset", "grouped,fair,resident")
+        status, out, errors = tandem(
+            "check", SCENE, "--device", ",".join(devices), "--preset", "grouped,fair,resident"
+        )
         self.assertEqual((status, errors), (0, []), out)
         rows = [line.split() for line in out.splitlines() if line.split()[:1] and line.split()[0] in devices]
         own = [row for row in rows if row[1] == "lbvh"]

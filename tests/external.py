@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""external.py PROGRAM SOURCE: scripts/external on generated meshes, against all pairs tested one by one, on a program that
-answers wrongly, and on invalid input; the counts of its page."""
+"""external.py PROGRAM SOURCE: scripts/external on generated meshes, against all pairs tested one by one, on a
+program that answers wrongly, and on invalid input; the counts of its page."""
+
 import lzma
 import math
 import re
@@ -31,15 +32,25 @@ sys.exit(code)
 def cloth():
     """Vertices and triangles of a square of cloth, with heights that differ."""
     n = CLOTH + 1
-    points = [(0.2 * i - 1, 0.9 + 0.05 * math.sin(3 * i + 5 * j), 0.2 * j - 1) for i in range(n) for j in range(n)]
+    points = [
+        (0.2 * i - 1, 0.9 + 0.05 * math.sin(3 * i + 5 * j), 0.2 * j - 1) for i in range(n) for j in range(n)
+    ]
     corners = [i * n + j for i in range(CLOTH) for j in range(CLOTH)]
     return points, [face for c in corners for face in ((c, c + 1, c + n), (c + 1, c + n + 1, c + n))]
 
 
 def ball():
     """Vertices and triangles of the side of a ball, some of whose coordinates are zero."""
-    points = [(math.cos(2 * math.pi * s / SECTORS) * math.cos(a), math.sin(a) if r != RINGS // 2 else 0.0, math.sin(2 * math.pi * s / SECTORS) * math.cos(a))
-              for r in range(RINGS) for a in [1.4 * (2 * r / (RINGS - 1) - 1)] for s in range(SECTORS)]
+    points = [
+        (
+            math.cos(2 * math.pi * s / SECTORS) * math.cos(a),
+            math.sin(a) if r != RINGS // 2 else 0.0,
+            math.sin(2 * math.pi * s / SECTORS) * math.cos(a),
+        )
+        for r in range(RINGS)
+        for a in [1.4 * (2 * r / (RINGS - 1) - 1)]
+        for s in range(SECTORS)
+    ]
     faces = []
     for r in range(RINGS - 1):
         for s in range(SECTORS):
@@ -53,21 +64,27 @@ def frames():
     (above, threads), (below, sides) = cloth(), ball()
     first = numpy.array([*above, *below], "f4")
     second = first.copy()
-    second[:len(above), 1] -= numpy.float32(0.3) + numpy.abs(first[:len(above), 0]) * numpy.float32(0.1)
+    second[: len(above), 1] -= numpy.float32(0.3) + numpy.abs(first[: len(above), 0]) * numpy.float32(0.1)
     return first, second, [*threads, *[tuple(v + len(above) for v in face) for face in sides]]
 
 
 def ply(path, vertices, faces, form="binary_little_endian", kind="double"):
     """A PLY file with a further property of vertices, compressed if its name ends in .xz."""
-    head = (f"ply\nformat {form} 1.0\ncomment made up\nelement vertex {len(vertices)}\nproperty {kind} x\nproperty {kind} y\nproperty {kind} z\n"
-            f"property uchar red\nelement face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n").encode()
+    head = (
+        f"ply\nformat {form} 1.0\ncomment made up\nelement vertex {len(vertices)}\nproperty {kind} x\nproperty {kind} y\nproperty {kind} z\n"
+        f"property uchar red\nelement face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"
+    ).encode()
     if form == "ascii":
-        body = "".join("%r %r %r 7\n" % tuple(map(float, v)) for v in vertices) + "".join(f"{len(f)} {' '.join(map(str, f))}\n" for f in faces)
+        body = "".join("%r %r %r 7\n" % tuple(map(float, v)) for v in vertices) + "".join(
+            f"{len(f)} {' '.join(map(str, f))}\n" for f in faces
+        )
         body = body.encode()
     else:
         order = ">" if "big" in form else "<"
         row = struct.Struct(order + ("3d" if kind == "double" else "3f") + "B")
-        body = b"".join(row.pack(*map(float, v), 7) for v in vertices) + b"".join(struct.pack(f"{order}B{len(f)}i", len(f), *f) for f in faces)
+        body = b"".join(row.pack(*map(float, v), 7) for v in vertices) + b"".join(
+            struct.pack(f"{order}B{len(f)}i", len(f), *f) for f in faces
+        )
     path.write_bytes(lzma.compress(head + body) if path.suffix == ".xz" else head + body)
     return path
 
@@ -76,7 +93,9 @@ def swept(first, second, elements):
     """Boxes (lo, hi) of elements, vertex by vertex."""
     lo, hi = [], []
     for element in elements:
-        values = [(float(frame[v][axis]), axis) for v in element for frame in (first, second) for axis in range(3)]
+        values = [
+            (float(frame[v][axis]), axis) for v in element for frame in (first, second) for axis in range(3)
+        ]
         lo.append([math.nextafter(min(x for x, a in values if a == axis), -math.inf) for axis in range(3)])
         hi.append([math.nextafter(max(x for x, a in values if a == axis), math.inf) for axis in range(3)])
     return numpy.array(lo), numpy.array(hi)
@@ -89,11 +108,21 @@ def overlaps(a, b):
 
 def counted(first, second, faces):
     """(all pairs, pairs without a common vertex) of vertices and faces, edges, faces."""
-    edges = sorted({tuple(sorted(pair)) for f in faces for pair in ((f[0], f[1]), (f[1], f[2]), (f[2], f[0]))})
+    edges = sorted(
+        {tuple(sorted(pair)) for f in faces for pair in ((f[0], f[1]), (f[1], f[2]), (f[2], f[0]))}
+    )
     vertices = [(v,) for v in range(len(first))]
     found = {}
-    for kind, a, b in (("vertex-face", vertices, faces), ("edge-edge", edges, edges), ("face-face", faces, faces)):
-        pairs = [(i, j) for i, j in numpy.argwhere(overlaps(swept(first, second, a), swept(first, second, b))) if a is not b or i < j]
+    for kind, a, b in (
+        ("vertex-face", vertices, faces),
+        ("edge-edge", edges, edges),
+        ("face-face", faces, faces),
+    ):
+        pairs = [
+            (i, j)
+            for i, j in numpy.argwhere(overlaps(swept(first, second, a), swept(first, second, b)))
+            if a is not b or i < j
+        ]
         found[kind] = len(pairs), sum(not set(a[i]) & set(b[j]) for i, j in pairs)
     return found
 
@@ -103,7 +132,10 @@ class External(ScriptCase):
     def setUpClass(cls):
         super().setUpClass()
         cls.first, cls.second, cls.faces = frames()
-        cls.files = [ply(cls.work / f"{name}.ply", vertices, cls.faces) for name, vertices in (("a", cls.first), ("b", cls.second))]
+        cls.files = [
+            ply(cls.work / f"{name}.ply", vertices, cls.faces)
+            for name, vertices in (("a", cls.first), ("b", cls.second))
+        ]
         cls.counts = counted(cls.first, cls.second, cls.faces)
 
     def run_script(self, *arguments, code=0, program=PROGRAM):
@@ -119,8 +151,13 @@ class External(ScriptCase):
             if not line.startswith("  "):
                 kind = line.split()[1].rstrip(":")
             else:
-                match = re.fullmatch(r"  (.*?)(?:, [\d.]+ s with files)?: ([\d,]+) pairs, ([\d,]+) without incident ones: (.*)", line)
-                found.setdefault(kind, []).append((match[1], *(int(n.replace(",", "")) for n in match.groups()[1:3]), match[4]))
+                match = re.fullmatch(
+                    r"  (.*?)(?:, [\d.]+ s with files)?: ([\d,]+) pairs, ([\d,]+) without incident ones: (.*)",
+                    line,
+                )
+                found.setdefault(kind, []).append(
+                    (match[1], *(int(n.replace(",", "")) for n in match.groups()[1:3]), match[4])
+                )
         return found
 
     def wrong_program(self, rows):
@@ -132,18 +169,41 @@ class External(ScriptCase):
     def test_counts_equal_all_pairs_tested_one_by_one(self):
         kinds = ["vertex-face", "edge-edge", "face-face"]
         expect = ",".join(str(self.counts[kind][1]) for kind in kinds)
-        text = self.run_script("-", *self.files, "--pairs", ",".join(kinds), "--algorithm", "tiled,leaf_query", "--expect", expect)
+        text = self.run_script(
+            "-",
+            *self.files,
+            "--pairs",
+            ",".join(kinds),
+            "--algorithm",
+            "tiled,leaf_query",
+            "--expect",
+            expect,
+        )
         found = self.lines(text)
         self.assertEqual(list(found), kinds)
         for kind in kinds:
             self.assertGreater(self.counts[kind][1], 100)
             self.assertEqual({line[1:] for line in found[kind]}, {(*self.counts[kind], "equal")}, text)
-            self.assertEqual([line[0] for line in found[kind]], ["sweep", "tiled on host", "leaf_query on host"])
+            self.assertEqual(
+                [line[0] for line in found[kind]], ["sweep", "tiled on host", "leaf_query on host"]
+            )
 
     def test_every_kind_of_file(self):
-        vertex_face = [("sweep", *self.counts["vertex-face"], "equal"), ("tiled on host", *self.counts["vertex-face"], "equal")]
-        for number, (form, kind, ending) in enumerate((("ascii", "double", ".ply"), ("binary_big_endian", "float", ".ply.xz"), ("binary_little_endian", "float", ".ply"))):
-            files = [ply(self.work / f"{number}{name}{ending}", vertices, self.faces, form, kind) for name, vertices in (("a", self.first), ("b", self.second))]
+        vertex_face = [
+            ("sweep", *self.counts["vertex-face"], "equal"),
+            ("tiled on host", *self.counts["vertex-face"], "equal"),
+        ]
+        for number, (form, kind, ending) in enumerate(
+            (
+                ("ascii", "double", ".ply"),
+                ("binary_big_endian", "float", ".ply.xz"),
+                ("binary_little_endian", "float", ".ply"),
+            )
+        ):
+            files = [
+                ply(self.work / f"{number}{name}{ending}", vertices, self.faces, form, kind)
+                for name, vertices in (("a", self.first), ("b", self.second))
+            ]
             text = self.run_script("none", *files, "--pairs", "vertex-face")
             self.assertEqual(self.lines(text), {"vertex-face": vertex_face}, form)
             self.assertIn(f"{len(self.first)} boxes of vertices and {len(self.faces)} boxes of faces", text)
@@ -157,12 +217,20 @@ class External(ScriptCase):
     def test_wrong_counts_and_pairs(self):
         rest = self.counts["vertex-face"][1]
         text = self.run_script("-", *self.files, "--pairs", "vertex-face", "--expect", rest + 1, code=1)
-        self.assertEqual({line[3] for line in self.lines(text)["vertex-face"]}, {f"DIFFERENT: expected: {rest + 1:,}"})
+        self.assertEqual(
+            {line[3] for line in self.lines(text)["vertex-face"]}, {f"DIFFERENT: expected: {rest + 1:,}"}
+        )
         text = self.run_script("cloth-ball", *self.files, "--pairs", "vertex-face", code=1)
         self.assertIn("DIFFERENT: published: 1,655,541", text)
-        for rows, expected in (("rows[1:]", "1 pairs of the sweep are missing, 0 are additional"), ("[*rows, rows[0]]", "0 are additional, 1 are repeated"),
-                               ("['0,0,0,1,0', *rows]", "are additional"), ("[]", "incident pairs are missing")):
-            text = self.run_script("-", *self.files, "--pairs", "vertex-face", code=1, program=self.wrong_program(rows))
+        for rows, expected in (
+            ("rows[1:]", "1 pairs of the sweep are missing, 0 are additional"),
+            ("[*rows, rows[0]]", "0 are additional, 1 are repeated"),
+            ("['0,0,0,1,0', *rows]", "are additional"),
+            ("[]", "incident pairs are missing"),
+        ):
+            text = self.run_script(
+                "-", *self.files, "--pairs", "vertex-face", code=1, program=self.wrong_program(rows)
+            )
             self.assertIn("equal", text.splitlines()[1])
             self.assertIn("DIFFERENT: ", text.splitlines()[2])
             self.assertIn(expected, text.splitlines()[2])
@@ -174,7 +242,9 @@ class External(ScriptCase):
             points = [(0, 0, 0), (1, 0, 0), (1, 1, 1), (1 + units * unit, 0, 0), (2, 1, 1), (2, 0, 1)]
             file = ply(self.work / "apart.ply", points, [(0, 1, 2), (3, 4, 5)])
             text = self.run_script("-", file, file, "--pairs", "vertex-face", "--expect", count)
-            self.assertEqual({line[1:] for line in self.lines(text)["vertex-face"]}, {(6 + count, count, "equal")})
+            self.assertEqual(
+                {line[1:] for line in self.lines(text)["vertex-face"]}, {(6 + count, count, "equal")}
+            )
 
     def test_boxes(self):
         random = numpy.random.default_rng(1)
@@ -184,19 +254,37 @@ class External(ScriptCase):
             sets.append((lo, lo + (random.random((count, 3)) * 0.2).astype("f4")))
         sets[0][0][0], sets[0][1][0] = sets[1][1][3], sets[1][1][3] + 1  # touches a corner
         sets[0][0][1], sets[0][1][1] = sets[1][0][4] - 1, sets[1][0][4]  # touches the opposite one
-        sets[0][0][2] = sets[1][0][5, 0] - 1, sets[1][1][5, 1], sets[1][0][5, 2]  # touches above, and begins before
+        sets[0][0][2] = (
+            sets[1][0][5, 0] - 1,
+            sets[1][1][5, 1],
+            sets[1][0][5, 2],
+        )  # touches above, and begins before
         sets[0][1][2] = sets[0][0][2] + 2
-        sets[1][0][1], sets[1][1][1] = -5, 5                             # contains all
-        sets[1][1][2] = sets[1][0][2]                                    # is a point
+        sets[1][0][1], sets[1][1][1] = -5, 5  # contains all
+        sets[1][1][2] = sets[1][0][2]  # is a point
         files = [self.work / f"{name}.bin" for name in "ab"]
         for file, (lo, hi) in zip(files, sets):
             file.write_bytes(numpy.concatenate([lo, hi], 1).astype("<f4").tobytes())
         between, within = overlaps(*sets).sum(), (overlaps(sets[1], sets[1]).sum() - 400) // 2
         found = self.lines(self.run_script("-", *files, "--boxes", "--expect", f"{between},{within}"))
-        self.assertEqual(found["between"], [("sweep", between, between, "equal"), ("tiled on host", between, between, "equal")])
-        self.assertEqual(found["within"], [("sweep", within, within, "equal"), ("tiled on host", within, within, "equal")])
-        self.refused("external", "has 10 bytes; expected 24", "-", self.bytes(b"0123456789"), files[1], "--boxes")
-        self.refused("external", "box 1 is not finite, or has lo above hi", "-", self.bytes(struct.pack("<12f", *range(6), 1, 0, 0, 0, 0, 0)), files[1], "--boxes")
+        self.assertEqual(
+            found["between"],
+            [("sweep", between, between, "equal"), ("tiled on host", between, between, "equal")],
+        )
+        self.assertEqual(
+            found["within"], [("sweep", within, within, "equal"), ("tiled on host", within, within, "equal")]
+        )
+        self.refused(
+            "external", "has 10 bytes; expected 24", "-", self.bytes(b"0123456789"), files[1], "--boxes"
+        )
+        self.refused(
+            "external",
+            "box 1 is not finite, or has lo above hi",
+            "-",
+            self.bytes(struct.pack("<12f", *range(6), 1, 0, 0, 0, 0, 0)),
+            files[1],
+            "--boxes",
+        )
 
     def bytes(self, data):
         path = self.work / "bad.ply"
@@ -212,24 +300,46 @@ class External(ScriptCase):
         packed.write_bytes(lzma.compress(good)[:-50])
         infinite = self.first.copy()
         infinite[3, 1] = numpy.inf
-        for expected, *files in (("none.ply: No such file", self.work / "none.ply", b), ("quad.ply: face 3 has 4 vertices; only triangles are read", quad, b),
-                                 (f"few.ply: has {len(self.first) - 1} vertices, but ", a, few), ("other.ply: has other faces than ", a, other),
-                                 ("cut.ply.xz: is no complete .xz file", packed, b), ("not finite", ply(self.work / "infinite.ply", infinite, self.faces), b),
-                                 ("has a vertex that is not in the file", ply(self.work / "beyond.ply", self.first, [(0, 1, 9999)]), b),
-                                 ("has no vertex or no face", ply(self.work / "empty.ply", self.first, []), b)):
+        for expected, *files in (
+            ("none.ply: No such file", self.work / "none.ply", b),
+            ("quad.ply: face 3 has 4 vertices; only triangles are read", quad, b),
+            (f"few.ply: has {len(self.first) - 1} vertices, but ", a, few),
+            ("other.ply: has other faces than ", a, other),
+            ("cut.ply.xz: is no complete .xz file", packed, b),
+            ("not finite", ply(self.work / "infinite.ply", infinite, self.faces), b),
+            (
+                "has a vertex that is not in the file",
+                ply(self.work / "beyond.ply", self.first, [(0, 1, 9999)]),
+                b,
+            ),
+            ("has no vertex or no face", ply(self.work / "empty.ply", self.first, []), b),
+        ):
             self.refused("external", expected, "-", *files)
-        for data, expected in ((b"", "is no PLY file"), (good[:-7], "the file is truncated"), (good.replace(b"double", b"triple"), "has no valid PLY header"),
-                               (good.replace(b"vertex_indices", b"corners_______"), "faces have no list vertex_indices"), (good.replace(b" z\n", b" w\n"), "vertices have no x, y, z"),
-                               (good.replace(b"element face", b"element edge"), "has no elements vertex and face"),
-                               (b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\none\n", "has a word that is no number")):
+        for data, expected in (
+            (b"", "is no PLY file"),
+            (good[:-7], "the file is truncated"),
+            (good.replace(b"double", b"triple"), "has no valid PLY header"),
+            (good.replace(b"vertex_indices", b"corners_______"), "faces have no list vertex_indices"),
+            (good.replace(b" z\n", b" w\n"), "vertices have no x, y, z"),
+            (good.replace(b"element face", b"element edge"), "has no elements vertex and face"),
+            (
+                b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\none\n",
+                "has a word that is no number",
+            ),
+        ):
             self.refused("external", expected, "-", self.bytes(data), b)
 
     def test_bad_use(self):
         program = ("--program", PROGRAM)
-        for expected, *arguments in (("the following arguments are required: NAME, FILE", ), ("unknown pairs 'within'", "-", *self.files, "--pairs", "within"),
-                                     ("needs a count for each of --pairs", "-", *self.files, "--expect", "5"), ("needs a count for each", "-", *self.files, "--expect", "5,x"),
-                                     ("build it by scripts/build", "-", *self.files, "--program", self.work / "none"), ("good.msh/a: Not a directory", "-", *self.files, "--scenes", self.good / "a"),
-                                     ("tandem: ", "-", *self.files, "--pairs", "vertex-face", "--device", "nothing", *program)):
+        for expected, *arguments in (
+            ("the following arguments are required: NAME, FILE",),
+            ("unknown pairs 'within'", "-", *self.files, "--pairs", "within"),
+            ("needs a count for each of --pairs", "-", *self.files, "--expect", "5"),
+            ("needs a count for each", "-", *self.files, "--expect", "5,x"),
+            ("build it by scripts/build", "-", *self.files, "--program", self.work / "none"),
+            ("good.msh/a: Not a directory", "-", *self.files, "--scenes", self.good / "a"),
+            ("tandem: ", "-", *self.files, "--pairs", "vertex-face", "--device", "nothing", *program),
+        ):
             self.refused("external", expected, *arguments)
 
     def test_counts_of_the_page(self):
@@ -244,7 +354,6 @@ class External(ScriptCase):
                 if re.fullmatch(r"[\d,]+", cell):
                     found[origin][name, kind] = int(cell.replace(",", ""))
         self.assertEqual(found, {"published": external.PUBLISHED, "our": known})
-
 
 
 if __name__ == "__main__":

@@ -1,8 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""gmsh_meshes.py PROGRAM SOURCE: meshes that Gmsh itself writes (tests/gmsh/made.py): of orders 1 to 3, with elements in two groups, in parts with
-ghost cells, beside prisms, with large numbers, in each of its formats. tandem reads each with the counts that Gmsh has, or refuses it in one
-line that names the way out. Installs Gmsh from PyPI into a folder of its own."""
+"""gmsh_meshes.py PROGRAM SOURCE: meshes that Gmsh itself writes (tests/gmsh/made.py): of orders 1 to 3, with
+elements in two groups, in parts with ghost cells, beside prisms, with large numbers, in each of its formats.
+tandem reads each with the counts that Gmsh has, or refuses it in one line that names the way out. Installs
+Gmsh from PyPI into a folder of its own."""
+
 import json
 import re
 import subprocess
@@ -13,7 +15,10 @@ from program import SOURCE, Case, tandem
 
 GMSH = "gmsh==4.15.2"
 READ = {".msh", ".vtk", ".mesh"}  # by tandem itself
-CONVERTED = {".inp", ".su2"}  # by tandem convert; meshio does not read what Gmsh writes as .cgns, .med and .bdf, nor elements of high order
+CONVERTED = {
+    ".inp",
+    ".su2",
+}  # by tandem convert; meshio does not read what Gmsh writes as .cgns, .med and .bdf, nor elements of high order
 OPTIONS = {"order2": ["--corners"], "order3": ["--corners"], "mixed": ["--only-tetrahedra"]}
 COUNTS = ("duplicates", "reduced", "other_cells")
 
@@ -23,7 +28,10 @@ class GmshMeshes(Case):
     def setUpClass(cls):
         super().setUpClass()
         subprocess.run([sys.executable, "-m", "venv", cls.work / "tools"], check=True)
-        subprocess.run([cls.work / "tools/bin/pip", "install", "--quiet", "--disable-pip-version-check", GMSH], check=True)
+        subprocess.run(
+            [cls.work / "tools/bin/pip", "install", "--quiet", "--disable-pip-version-check", GMSH],
+            check=True,
+        )
         cls.made = cls.work / "made"
         cls.made.mkdir()
         subprocess.run([cls.work / "tools/bin/python", SOURCE / "tests/gmsh/made.py", cls.made], check=True)
@@ -33,14 +41,34 @@ class GmshMeshes(Case):
         """The counts that tandem reads, or its refusal."""
         out = self.work / "made.jsonl"
         out.unlink(missing_ok=True)
-        status, text, errors = tandem("run", "--mesh", path, "--device", "host", "--algorithm", "tiled", "--no-check", "--no-count", "--truth", "none",
-                                      "--repeat", 1, "--quiet", "--out", out, *options)
+        status, text, errors = tandem(
+            "run",
+            "--mesh",
+            path,
+            "--device",
+            "host",
+            "--algorithm",
+            "tiled",
+            "--no-check",
+            "--no-count",
+            "--truth",
+            "none",
+            "--repeat",
+            1,
+            "--quiet",
+            "--out",
+            out,
+            *options,
+        )
         if status != 0:
             self.assertEqual((status, len(errors)), (2, 1), (text, errors))
             self.assertEqual(re.findall(r"[^\x20-\x7e]", errors[0].replace(str(path), "")), [], errors)
             return errors[0]
-        record, = self.records(out)
-        return {"tetrahedra": record["scene"]["tetrahedra"], **{name: record["scene"]["reading"][name] for name in COUNTS}}
+        (record,) = self.records(out)
+        return {
+            "tetrahedra": record["scene"]["tetrahedra"],
+            **{name: record["scene"]["reading"][name] for name in COUNTS},
+        }
 
     def expect_read(self, path, content, counts):
         options = OPTIONS.get(content, [])

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""gpu_arrays.py LIBRARY [DEVICE]: tandem.Collider with arrays of cupy, torch or jax on a CUDA device (cuda:0).
-Frames are not copied and have bit for bit the answers of NumPy arrays, after the library's enqueued work. Work
-follows the library's stream, pairs stay on the device, and errors equal those for host memory. For a machine with
-a GPU: scripts/gpu/run python."""
+"""gpu_arrays.py LIBRARY [DEVICE]: tandem.Collider with arrays of cupy, torch or jax on a CUDA device
+(cuda:0). Frames are not copied and have bit for bit the answers of NumPy arrays, after the library's enqueued
+work. Work follows the library's stream, pairs stay on the device, and errors equal those for host memory. For
+a machine with a GPU: scripts/gpu/run python."""
+
 import sys
 import unittest
 import unittest.mock
@@ -20,8 +21,10 @@ SIDE = 4096  # size of the matrices whose products keep the GPU busy for tens of
 
 class Cupy:
     """The interface of the tests to a library."""
+
     def __init__(self):
         import cupy
+
         self.module = cupy
 
     def array(self, values, dtype=numpy.float64):
@@ -68,6 +71,7 @@ class Cupy:
 class Torch(Cupy):
     def __init__(self):
         import torch
+
         self.module = torch
 
     def array(self, values, dtype=numpy.float64):
@@ -106,6 +110,7 @@ class Torch(Cupy):
 class Jax(Cupy):
     def __init__(self):
         import jax
+
         jax.config.update("jax_enable_x64", True)
         self.module = jax
 
@@ -144,11 +149,15 @@ class Jax(Cupy):
 def setUpModule():
     global ON
     ON = {"cupy": Cupy, "torch": Torch, "jax": Jax}[LIBRARY]()
-    print(f"{LIBRARY} {ON.module.__version__}, {DEVICE}: {next(d['name'] for d in tandem.devices() if d['id'] == DEVICE)}", file=sys.stderr)
+    print(
+        f"{LIBRARY} {ON.module.__version__}, {DEVICE}: {next(d['name'] for d in tandem.devices() if d['id'] == DEVICE)}",
+        file=sys.stderr,
+    )
 
 
 class InterfaceAlone:
     """An array with __cuda_array_interface__ only."""
+
     def __init__(self, array):
         self.__cuda_array_interface__ = array.__cuda_array_interface__
         self.kept = array
@@ -156,6 +165,7 @@ class InterfaceAlone:
 
 class DlpackAlone:
     """An array with DLPack's methods only."""
+
     def __init__(self, array):
         self.__dlpack__, self.__dlpack_device__ = array.__dlpack__, array.__dlpack_device__
 
@@ -169,12 +179,16 @@ class Arrays(unittest.TestCase):
 
     @staticmethod
     def collider(scene, **options):
-        return tandem.Collider(scene.meshes, device=DEVICE, bodies=scene.bodies, deformable=scene.deformable, **options)
+        return tandem.Collider(
+            scene.meshes, device=DEVICE, bodies=scene.bodies, deformable=scene.deformable, **options
+        )
 
     def expect_same(self, result, expected):
         self.assertGreater(expected.count, 100)
         self.assertEqual((result.count, result.contact_count), (expected.count, expected.contact_count))
-        self.assertEqual((result.digest(), result.contact_digest()), (expected.digest(), expected.contact_digest()))
+        self.assertEqual(
+            (result.digest(), result.contact_digest()), (expected.digest(), expected.contact_digest())
+        )
         self.assertTrue((result.pairs() == expected.pairs()).all())
 
     def test_poses_are_not_copied(self):
@@ -194,7 +208,9 @@ class Arrays(unittest.TestCase):
             answer = self.soft.run(vertices=moved)
             self.assertEqual(self.soft._core.addresses, [0, *map(ON.address, moved.values())])
             self.expect_same(answer, self.soft.run(vertices=rows))
-            mixed = self.soft.run(vertices={body: moved[body] if body % 2 else points for body, points in rows.items()})
+            mixed = self.soft.run(
+                vertices={body: moved[body] if body % 2 else points for body, points in rows.items()}
+            )
             self.expect_same(mixed, answer)
             buffers = moved
         for _ in range(5):  # the same commands again
@@ -216,7 +232,9 @@ class Arrays(unittest.TestCase):
         poses = ON.array(self.pile.poses(0))
         if not hasattr(type(poses), "__dlpack_c_exchange_api__"):
             self.skipTest(f"{LIBRARY} has none")
-        with unittest.mock.patch.object(type(poses), "__dlpack__", side_effect=BufferError("not by the table")):
+        with unittest.mock.patch.object(
+            type(poses), "__dlpack__", side_effect=BufferError("not by the table")
+        ):
             self.expect_same(self.rigid.run(poses), self.rigid.run(self.pile.poses(0)))
 
     def test_frames_wait_for_their_enqueued_work(self):
@@ -261,7 +279,9 @@ class Arrays(unittest.TestCase):
             self.assertEqual(collider._core.addresses, [ON.address(poses)])
             self.expect_same(answer, expected)
             rows = ON.taken(answer.pairs(on_device=True))
-            self.assertEqual(sorted(map(tuple, ON.host(rows).tolist())), sorted(map(tuple, expected.pairs().tolist())))
+            self.assertEqual(
+                sorted(map(tuple, ON.host(rows).tolist())), sorted(map(tuple, expected.pairs().tolist()))
+            )
         by_default_stream = self.collider(self.pile, stream=0)
         self.expect_same(by_default_stream.run(values), expected)
 
@@ -270,7 +290,9 @@ class Arrays(unittest.TestCase):
         first, second = ON.taken(answer.pairs(on_device=True)), ON.taken(answer.pairs(on_device=True))
         self.assertEqual(ON.address(first), ON.address(second))
         self.assertEqual(tuple(first.shape), (answer.count, 4))
-        self.assertEqual(tuple(map(int, answer.pairs(on_device=True).__dlpack_device__())), (2, int(DEVICE[5:])))
+        self.assertEqual(
+            tuple(map(int, answer.pairs(on_device=True).__dlpack_device__())), (2, int(DEVICE[5:]))
+        )
         kept = ON.host(first).copy()
         self.assertTrue((kept == answer.pairs()).all())
         del answer
@@ -294,20 +316,30 @@ class Arrays(unittest.TestCase):
         rows = self.plates.vertices(60)
         rows[1][7, 2] = numpy.nan
         message = self.failure(ValueError, self.soft.run, vertices={1: ON.array(rows[1])})
-        self.assertEqual((message, self.failure(ValueError, self.soft.run, vertices={1: rows[1]})), (message, message))
+        self.assertEqual(
+            (message, self.failure(ValueError, self.soft.run, vertices={1: rows[1]})), (message, message)
+        )
         self.assertIn("body 1: vertex 7 is not finite", message)
         good = self.pile.poses(0)
         self.expect_same(self.rigid.run(ON.array(good)), self.rigid.run(good))
 
     def test_refused_input(self):
         good = self.pile.poses(0)
-        for kind, words, value in ((ValueError, "expected (n, 7)", ON.array(good[:, :6])), (ValueError, "rows for 64 bodies", ON.array(good[1:])),
-                                   (TypeError, "neither float64 nor float32", ON.array(good, numpy.int32))):
+        for kind, words, value in (
+            (ValueError, "expected (n, 7)", ON.array(good[:, :6])),
+            (ValueError, "rows for 64 bodies", ON.array(good[1:])),
+            (TypeError, "neither float64 nor float32", ON.array(good, numpy.int32)),
+        ):
             self.assertIn(words, self.failure(kind, self.rigid.run, value))
         if LIBRARY != "jax":  # whose arrays are always contiguous
-            self.assertIn("rows are not contiguous", self.failure(ValueError, self.rigid.run, ON.array(numpy.repeat(good, 2, axis=1))[:, ::2]))
+            self.assertIn(
+                "rows are not contiguous",
+                self.failure(ValueError, self.rigid.run, ON.array(numpy.repeat(good, 2, axis=1))[:, ::2]),
+            )
         if LIBRARY == "torch":
-            self.assertIn("__dlpack__ failed", self.failure(ValueError, self.rigid.run, ON.array(good).requires_grad_()))
+            self.assertIn(
+                "__dlpack__ failed", self.failure(ValueError, self.rigid.run, ON.array(good).requires_grad_())
+            )
         host = tandem.Collider(self.pile.meshes, bodies=self.pile.bodies)
         self.assertIn("the collider works on host", self.failure(ValueError, host.run, ON.array(good)))
 

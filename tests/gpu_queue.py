@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """gpu_queue.py PROGRAM SOURCE: scripts/gpu/test_queue over a program that answers like GoogleTest."""
+
 import os
 import subprocess
 import sys
@@ -11,8 +12,8 @@ from pathlib import Path
 
 from program import SOURCE
 
-# Suite.Passes, Suite.Fails unless the file "mended" exists, Suite.Skips, Suite.Waits until the file "go" exists, and
-# Other.RunsNothing, which ends well without having run.
+# Suite.Passes, Suite.Fails unless the file "mended" exists, Suite.Skips, Suite.Waits until the file "go"
+# exists, and Other.RunsNothing, which ends well without having run.
 PROGRAM = """#!/usr/bin/bash
 cd "$(dirname "$0")"
 if [ "$1" = --gtest_list_tests ]; then
@@ -42,10 +43,19 @@ class Queue(unittest.TestCase):
         self.program.chmod(0o755)
 
     def queue(self, seconds):
-        done = subprocess.run([SOURCE / "scripts/gpu/test_queue", self.folder / "journal", str(seconds), self.program], capture_output=True,
-                              text=True, check=False, env={**os.environ, "TEST_PROCESSES": "4"})
+        done = subprocess.run(
+            [SOURCE / "scripts/gpu/test_queue", self.folder / "journal", str(seconds), self.program],
+            capture_output=True,
+            text=True,
+            check=False,
+            env={**os.environ, "TEST_PROCESSES": "4"},
+        )
         lines = (self.folder / "journal").read_text().splitlines()
-        return done, [(line.split()[0], line.split()[3]) for line in lines], (self.folder / "runs").read_text().split()
+        return (
+            done,
+            [(line.split()[0], line.split()[3]) for line in lines],
+            (self.folder / "runs").read_text().split(),
+        )
 
     def test_continues_where_the_last_call_ended(self):
         begin = time.monotonic()
@@ -54,7 +64,10 @@ class Queue(unittest.TestCase):
         self.assertEqual(done.returncode, 1)  # a failure outweighs the end of the time
         self.assertIn("== test_made_up Suite.Fails: status 1\nexpected 1, got 2", done.stderr)
         self.assertIn("failed: test_made_up Suite.Fails", done.stdout)
-        self.assertEqual(sorted(journal), [("failed", "Suite.Fails"), ("passed", "Suite.Passes"), ("skipped", "Suite.Skips")])
+        self.assertEqual(
+            sorted(journal),
+            [("failed", "Suite.Fails"), ("passed", "Suite.Passes"), ("skipped", "Suite.Skips")],
+        )
         (self.folder / "mended").touch()
         done, journal, runs = self.queue(2)
         self.assertEqual((done.returncode, done.stderr), (75, ""))

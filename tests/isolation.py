@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 """isolation.py PROGRAM SOURCE: cells in separate processes, and the effects of killing these processes or the
 program."""
+
 import json
 import os
 import pathlib
@@ -13,15 +14,32 @@ import unittest
 
 from program import PROGRAM, SMALL, Case, sets, tandem
 
-CAPACITIES = {name: capacity for name, capacity in SMALL.items() if name in ("pair_capacity", "contact_capacity")}
-CELLS = ("plates:count=2", "--frames", "0:1", "--device", "host", "--algorithm", "chunked,tiled", "--truth", "none", *sets(CAPACITIES))
+CAPACITIES = {
+    name: capacity for name, capacity in SMALL.items() if name in ("pair_capacity", "contact_capacity")
+}
+CELLS = (
+    "plates:count=2",
+    "--frames",
+    "0:1",
+    "--device",
+    "host",
+    "--algorithm",
+    "chunked,tiled",
+    "--truth",
+    "none",
+    *sets(CAPACITIES),
+)
 
 
 def children(process):
     """Cell processes that it has started and that are past exec; the program waits for exec."""
     try:
-        started = [int(word) for word in pathlib.Path(f"/proc/{process}/task/{process}/children").read_text().split()]
-        return [child for child in started if b"isolated" in pathlib.Path(f"/proc/{child}/cmdline").read_bytes()]
+        started = [
+            int(word) for word in pathlib.Path(f"/proc/{process}/task/{process}/children").read_text().split()
+        ]
+        return [
+            child for child in started if b"isolated" in pathlib.Path(f"/proc/{child}/cmdline").read_bytes()
+        ]
     except (FileNotFoundError, ProcessLookupError):
         return []
 
@@ -42,7 +60,12 @@ def wait_for(what):
 
 class Isolation(Case):
     def start(self, *arguments):
-        return subprocess.Popen([str(PROGRAM), "run", *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        return subprocess.Popen(
+            [str(PROGRAM), "run", *map(str, arguments)],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
 
     def end(self, process):
         out, errors = process.communicate()
@@ -61,7 +84,9 @@ class Isolation(Case):
                 self.assertEqual(record[part], other[part])
             for part in ("body_pairs", "candidate_pairs", "contacts", "digest", "counters", "submissions"):
                 self.assertEqual(record["work"][part], other["work"][part], part)
-            self.assertEqual(len(other["stages"]["traverse"]["device_ns"]["samples"]), self.rounds_of_two_samples(other))
+            self.assertEqual(
+                len(other["stages"]["traverse"]["device_ns"]["samples"]), self.rounds_of_two_samples(other)
+            )
 
     def test_a_crash_affects_its_cell_only(self):
         out = self.work / "crash.jsonl"
@@ -85,7 +110,18 @@ class Isolation(Case):
         self.assertFalse(is_alive(victim))
 
     def test_no_process_outlives_the_program(self):
-        process = self.start("pile:bodies=300,frames=1", "--device", "host", "--algorithm", "chunked", "--isolate", "--noise", 1e-9, "--seconds", 100000)
+        process = self.start(
+            "pile:bodies=300,frames=1",
+            "--device",
+            "host",
+            "--algorithm",
+            "chunked",
+            "--isolate",
+            "--noise",
+            1e-9,
+            "--seconds",
+            100000,
+        )
         child = wait_for(lambda: children(process.pid))[0]
         time.sleep(1)  # it has read its task
         self.assertTrue(is_alive(child))
@@ -100,7 +136,21 @@ class Isolation(Case):
     def test_rounds_survive_a_kill(self):
         """A cell that was killed in its third round continues with the fourth, without another check."""
         out, left = self.work / "rounds.jsonl", self.work / "rounds.jsonl.unfinished"
-        arguments = ("plates:count=2", "--frames", "0:8", "--device", "host", "--algorithm", "chunked,tiled", "--repeat", 8, "--truth", "none", "--out", out)
+        arguments = (
+            "plates:count=2",
+            "--frames",
+            "0:8",
+            "--device",
+            "host",
+            "--algorithm",
+            "chunked,tiled",
+            "--repeat",
+            8,
+            "--truth",
+            "none",
+            "--out",
+            out,
+        )
         process = self.start(*arguments)
         wait_for(lambda: left.exists() and len(left.read_text().splitlines()) >= 5)
         process.kill()

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 """kills.py PROGRAM SOURCE: run, plans, simulate and paper are killed at random moments and resumed until they
 finish, repeatedly: no record is lost, and the final result equals that without a kill."""
+
 import collections
 import json
 import os
@@ -15,10 +16,18 @@ import unittest
 from program import LONG, PROGRAM, Case, sets, tandem, tried
 
 KILLS = 200 if LONG else 6  # per command
-CAPACITIES = {name: 4096 for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity", "seed_capacity")}
-PLAN = {"plan": "to be killed", "scenes": ["plates:count=2", "pile:bodies=2,frames=1", "pile:bodies=3,frames=1"], "frames": 0,
-        "devices": ["host", "opencl:0"] if LONG else "host", "algorithms": ["chunked", "tiled"], "settings": {"k": [6, 8]},
-        "measure": {"repeat": 3, "truth": "none"}}
+CAPACITIES = {
+    name: 4096 for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity", "seed_capacity")
+}
+PLAN = {
+    "plan": "to be killed",
+    "scenes": ["plates:count=2", "pile:bodies=2,frames=1", "pile:bodies=3,frames=1"],
+    "frames": 0,
+    "devices": ["host", "opencl:0"] if LONG else "host",
+    "algorithms": ["chunked", "tiled"],
+    "settings": {"k": [6, 8]},
+    "measure": {"repeat": 3, "truth": "none"},
+}
 
 
 def whole_lines(path):
@@ -39,15 +48,56 @@ class Kills(Case):
     def tearDownClass(cls):
         print(f"kills: {dict(cls.counts)}")
         if cls.clear == {"run", "plan", "simulate", "paper"}:
-            tried("kills at random moments: run, plans, simulate and paper", sum(cls.counts.values()), "kills")
+            tried(
+                "kills at random moments: run, plans, simulate and paper", sum(cls.counts.values()), "kills"
+            )
         super().tearDownClass()
 
     def words(self, command, folder):
-        cells = ("--mesh", self.good, "--mesh", self.good, "--device", "host", "--algorithm", "chunked,tiled", *sets({"k": "6,8", **CAPACITIES}), "--repeat", 2, "--truth", "none")
-        return {"run": ("run", *cells, "--resume", "--out", folder / "new.jsonl"),
-                "plan": ("run", self.plan, "--resume", "--out", folder / "new.jsonl"),
-                "simulate": ("simulate", "arch:segments=2", "--steps", 20, "--checkpoint", 3, "--device", "host", "-o", folder / "a.frames", "--record", folder / "new.jsonl", "--quiet"),
-                "paper": ("paper", "--device", "host", "-o", folder, "--steps", "chunks-morton,chunks-breadth", "--measure-only")}[command]
+        cells = (
+            "--mesh",
+            self.good,
+            "--mesh",
+            self.good,
+            "--device",
+            "host",
+            "--algorithm",
+            "chunked,tiled",
+            *sets({"k": "6,8", **CAPACITIES}),
+            "--repeat",
+            2,
+            "--truth",
+            "none",
+        )
+        return {
+            "run": ("run", *cells, "--resume", "--out", folder / "new.jsonl"),
+            "plan": ("run", self.plan, "--resume", "--out", folder / "new.jsonl"),
+            "simulate": (
+                "simulate",
+                "arch:segments=2",
+                "--steps",
+                20,
+                "--checkpoint",
+                3,
+                "--device",
+                "host",
+                "-o",
+                folder / "a.frames",
+                "--record",
+                folder / "new.jsonl",
+                "--quiet",
+            ),
+            "paper": (
+                "paper",
+                "--device",
+                "host",
+                "-o",
+                folder,
+                "--steps",
+                "chunks-morton,chunks-breadth",
+                "--measure-only",
+            ),
+        }[command]
 
     def start(self, command, folder):
         words = self.words(command, folder)
@@ -55,9 +105,15 @@ class Kills(Case):
             words += ("--resume",)
         if command == "plan" and self.chance.random() < 0.3:
             words += ("--isolate",)
-        # A separate process group: a kill by a user or a scheduler also reaches children; half of the kills here do
-        # not.
-        return subprocess.Popen([str(PROGRAM), *map(str, words)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, start_new_session=True)
+        # A separate process group: a kill by a user or a scheduler also reaches children; half of the kills
+        # here do not.
+        return subprocess.Popen(
+            [str(PROGRAM), *map(str, words)],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+        )
 
     def end(self, process, wait):
         """Its exit code. If it has not ended after `wait` seconds, kills it or its whole group."""
@@ -77,8 +133,14 @@ class Kills(Case):
     def answers(path):
         """Values that every run must record equally, with their counts."""
         lines = [json.loads(line) for line in whole_lines(path)]
-        return collections.Counter(json.dumps([line.get(name) for name in ("key", "kind", "step", "exit", "status", "asked", "agreement")]
-                                              + [line["work"]["candidate_pairs"] if "work" in line else None]) for line in lines if line.get("kind") not in ("run", "verdict"))
+        return collections.Counter(
+            json.dumps(
+                [line.get(name) for name in ("key", "kind", "step", "exit", "status", "asked", "agreement")]
+                + [line["work"]["candidate_pairs"] if "work" in line else None]
+            )
+            for line in lines
+            if line.get("kind") not in ("run", "verdict")
+        )
 
     def undisturbed(self, command):
         """(folder, seconds) of a run without a kill."""
@@ -92,7 +154,9 @@ class Kills(Case):
         return folder, time.monotonic() - begin
 
     def compare(self, command, folder, whole):
-        self.assertEqual(self.answers(self.records(command, folder)), self.answers(self.records(command, whole)))
+        self.assertEqual(
+            self.answers(self.records(command, folder)), self.answers(self.records(command, whole))
+        )
         for path in (*whole.glob("*.frames"), *whole.glob("*.csv")):
             self.assertEqual((folder / path.name).read_bytes(), path.read_bytes(), path.name)
         self.assertEqual([path.name for path in folder.glob("*.unfinished")], [])
@@ -107,10 +171,13 @@ class Kills(Case):
                 folder.mkdir(exist_ok=True)
             before = whole_lines(self.records(command, folder))
             # After the last kill the run may end, as for a user who resumes.
-            code = self.end(self.start(command, folder), self.chance.uniform(0, seconds) if self.counts[command] < KILLS else 120)
+            code = self.end(
+                self.start(command, folder),
+                self.chance.uniform(0, seconds) if self.counts[command] < KILLS else 120,
+            )
             after = whole_lines(self.records(command, folder))
-            self.assertEqual(after[:len(before)], before, "a record is gone")
-            for line in after[len(before):]:
+            self.assertEqual(after[: len(before)], before, "a record is gone")
+            for line in after[len(before) :]:
                 json.loads(line)
             self.assertIn(code, (0, -signal.SIGKILL))
             if code == 0:

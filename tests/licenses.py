@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""licenses.py PROGRAM SOURCE: every file has a license, by a line of its own or by REUSE.toml, as `reuse lint` demands; packages and pages
-have the notices of the libraries that they contain."""
+"""licenses.py PROGRAM SOURCE: every file has a license, by a line of its own or by REUSE.toml, as `reuse
+lint` demands; packages and pages have the notices of the libraries that they contain."""
+
 import pathlib
 import re
 import subprocess
@@ -20,7 +21,9 @@ NOTICES = re.compile(r"\(c\) \d{4}(?:-\d{4})? ([^\n*]+)", re.I)
 def pattern_of(glob):
     """A path of REUSE.toml as a regular expression: ** also matches slashes."""
     parts = re.split(r"(\*\*|\*)", glob)
-    return re.compile("".join({"**": ".*", "*": "[^/]*"}.get(part, re.escape(part)) for part in parts) + r"\Z")
+    return re.compile(
+        "".join({"**": ".*", "*": "[^/]*"}.get(part, re.escape(part)) for part in parts) + r"\Z"
+    )
 
 
 def table_license(tables, path):
@@ -45,18 +48,24 @@ def problems(root, paths):
             own = LINE.search(opened.read(BEGIN))
         name = own[1].decode() if own else table_license(tables, path)
         if name is None:
-            yield f"{path}: has no line SPDX-License-" f"Identifier, and REUSE.toml does not cover it"
+            yield f"{path}: has no line SPDX-License-Identifier, and REUSE.toml does not cover it"
         elif name not in known:
             yield f"{path}: LICENSES has no text of {name}"
 
 
 class Licenses(unittest.TestCase):
     def test_every_file_has_a_license(self):
-        listed = subprocess.run(["git", "-C", SOURCE, "ls-files", "-z"], capture_output=True, text=True, check=False)
+        listed = subprocess.run(
+            ["git", "-C", SOURCE, "ls-files", "-z"], capture_output=True, text=True, check=False
+        )
         paths = [path for path in listed.stdout.split("\0") if path]
         if listed.returncode != 0:  # an archive of the sources, without git
-            paths = [str(path.relative_to(SOURCE)) for folder in ("base", "harness", "python", "scripts") for path in (SOURCE / folder).rglob("*")
-                     if "__pycache__" not in path.parts]
+            paths = [
+                str(path.relative_to(SOURCE))
+                for folder in ("base", "harness", "python", "scripts")
+                for path in (SOURCE / folder).rglob("*")
+                if "__pycache__" not in path.parts
+            ]
         self.assertGreater(len(paths), 300)
         self.assertEqual(list(problems(SOURCE, paths)), [])
 
@@ -65,10 +74,21 @@ class Licenses(unittest.TestCase):
             root = pathlib.Path(folder)
             (root / "LICENSES").mkdir()
             (root / "LICENSES/MIT.txt").write_text("text")
-            (root / "REUSE.toml").write_text('[[annotations]]\npath = "**"\n\n[[annotations]]\npath = ["**.md", "data/*.csv"]\nSPDX-License-' 'Identifier = "MIT"\n')
-            files = {"a.md": "", "deep/b.md": "", "data/c.csv": "1", "data/deep/d.csv": "1", "e.cpp": "int e;",
-                     "f.cpp": "// SPDX-License-" "Identifier: MIT\n", "g.cpp": "// SPDX-License-" "Identifier: GPL-3.0-only\n",
-                     "h.cpp": " " * BEGIN + "// SPDX-License-" "Identifier: MIT\n", "i.markdown": ""}
+            (root / "REUSE.toml").write_text(
+                '[[annotations]]\npath = "**"\n\n[[annotations]]\npath = ["**.md", "data/*.csv"]\nSPDX-License-'
+                'Identifier = "MIT"\n'
+            )
+            files = {
+                "a.md": "",
+                "deep/b.md": "",
+                "data/c.csv": "1",
+                "data/deep/d.csv": "1",
+                "e.cpp": "int e;",
+                "f.cpp": "// SPDX-License-Identifier: MIT\n",
+                "g.cpp": "// SPDX-License-Identifier: GPL-3.0-only\n",
+                "h.cpp": " " * BEGIN + "// SPDX-License-Identifier: MIT\n",
+                "i.markdown": "",
+            }
             for name, text in files.items():
                 (root / name).parent.mkdir(parents=True, exist_ok=True)
                 (root / name).write_text(text)
@@ -77,9 +97,14 @@ class Licenses(unittest.TestCase):
 
     def test_pages_and_packages_have_the_notices_of_libraries(self):
         """Chart.js and three.js keep notices of their parts in their texts: each stands in pages and in NOTICE.md."""
-        copied = re.search(r"foreach\(library (.+?)\)", (SOURCE / "cmake/external.cmake").read_text())[1].split()
+        copied = re.search(r"foreach\(library (.+?)\)", (SOURCE / "cmake/external.cmake").read_text())[
+            1
+        ].split()
         self.assertEqual({name.split("/")[0] for name in copied}, {"chart.js", "three"})
-        texts = [" ".join((SOURCE / name).read_text().split()) for name in ("NOTICE.md", "python/tandem/report/page/page.html")]
+        texts = [
+            " ".join((SOURCE / name).read_text().split())
+            for name in ("NOTICE.md", "python/tandem/report/page/page.html")
+        ]
         for owner in ("Chart.js Contributors", "three.js authors", "Jukka Kurkela"):
             self.assertTrue(all(owner in text for text in texts), owner)
         for path in (JAVASCRIPT / name for name in copied):
@@ -87,15 +112,35 @@ class Licenses(unittest.TestCase):
                 self.assertTrue(all(owner.strip() in text for text in texts), f"{path}: {owner}")
 
     def test_packages_have_the_texts(self):
-        install, project = (SOURCE / "cmake/install.cmake").read_text(), tomllib.loads((SOURCE / "pyproject.toml").read_text())
+        install, project = (
+            (SOURCE / "cmake/install.cmake").read_text(),
+            tomllib.loads((SOURCE / "pyproject.toml").read_text()),
+        )
         self.assertIn("install(FILES LICENSE NOTICE.md ", install)
         self.assertEqual(project["project"]["license-files"], ["LICENSE", "NOTICE.md"])
         notice = (SOURCE / "NOTICE.md").read_text()
-        compiled_in = {"Boost": "Boost", "Eigen3": "Eigen", "fmt": "{fmt}", "nlohmann_json": "JSON for Modern C++", "CLI11": "CLI11"}
-        shared = {"OpenCL": "OpenCL", "ZLIB": "zlib", "LZ4": "LZ4", "LibLZMA": "liblzma", "TBB": "oneTBB", "GMP": "GMP", "embree": "Embree", "MPI": "MPI"}
+        compiled_in = {
+            "Boost": "Boost",
+            "Eigen3": "Eigen",
+            "fmt": "{fmt}",
+            "nlohmann_json": "JSON for Modern C++",
+            "CLI11": "CLI11",
+        }
+        shared = {
+            "OpenCL": "OpenCL",
+            "ZLIB": "zlib",
+            "LZ4": "LZ4",
+            "LibLZMA": "liblzma",
+            "TBB": "oneTBB",
+            "GMP": "GMP",
+            "embree": "Embree",
+            "MPI": "MPI",
+        }
         tools = {"Threads", "Python3"}
         found = set(re.findall(r"find_package\((\w+)", (SOURCE / "CMakeLists.txt").read_text()))
-        self.assertEqual(found - tools - compiled_in.keys() - shared.keys(), set(), "NOTICE.md has to name them")
+        self.assertEqual(
+            found - tools - compiled_in.keys() - shared.keys(), set(), "NOTICE.md has to name them"
+        )
         for name in (found & compiled_in.keys()) | (found & shared.keys()):
             self.assertIn((compiled_in | shared)[name], notice)
 

@@ -1,8 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""made_meshes.py PROGRAM SOURCE: meshes that meshio writes in every format that it has for tetrahedra, of the project's meshes, and with TANDEM_MESHES=FOLDER
-of those there: plain, with duplicates, torn, beside surfaces, mixed, of second order, with ghost cells. tandem reads each with the counts that
-meshio reads, or refuses it in one line that names the way out, which then gives these counts."""
+"""made_meshes.py PROGRAM SOURCE: meshes that meshio writes in every format that it has for tetrahedra, of the
+project's meshes, and with TANDEM_MESHES=FOLDER of those there: plain, with duplicates, torn, beside surfaces,
+mixed, of second order, with ghost cells. tandem reads each with the counts that meshio reads, or refuses it
+in one line that names the way out, which then gives these counts."""
+
 import itertools
 import os
 import pathlib
@@ -16,7 +18,14 @@ from meshio.gmsh import _gmsh40
 from program import LONG, SOURCE, Case, bar, tandem
 
 READ, CONVERTED = "read", "by tandem convert"  # how tandem takes a format
-EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))  # of meshio's tetra10, whose nodes 4 to 9 are their middles
+EDGES = (
+    (0, 1),
+    (1, 2),
+    (0, 2),
+    (0, 3),
+    (1, 3),
+    (2, 3),
+)  # of meshio's tetra10, whose nodes 4 to 9 are their middles
 MOST = 20000  # tetrahedra of a real mesh
 
 
@@ -26,27 +35,67 @@ def written(kind, **options):
 
 def as_gmsh40(binary, version):
     """Gmsh 4.0 itself writes version 4."""
+
     def write(mesh, path):
         _gmsh40.write(str(path), mesh, binary=binary)
         path.write_bytes(path.read_bytes().replace(b"$MeshFormat\n4.0 ", b"$MeshFormat\n%b " % version, 1))
+
     return write
 
 
 FORMATS = [  # suffix, how, writer
-    *((".vtk", READ, written(kind, binary=binary)) for kind in ("vtk42", "vtk51") for binary in (False, True)),
-    *((".vtu", READ, written("vtu", **options)) for options in
-      ({"binary": False}, {"compression": None}, {"compression": "zlib"}, {"compression": "lzma"}, {"header_type": "UInt64"})),
-    *((".msh", READ, written(kind, binary=binary)) for kind in ("gmsh", "gmsh22") for binary in (False, True)),
+    *(
+        (".vtk", READ, written(kind, binary=binary))
+        for kind in ("vtk42", "vtk51")
+        for binary in (False, True)
+    ),
+    *(
+        (".vtu", READ, written("vtu", **options))
+        for options in (
+            {"binary": False},
+            {"compression": None},
+            {"compression": "zlib"},
+            {"compression": "lzma"},
+            {"header_type": "UInt64"},
+        )
+    ),
+    *(
+        (".msh", READ, written(kind, binary=binary))
+        for kind in ("gmsh", "gmsh22")
+        for binary in (False, True)
+    ),
     *((".msh", READ, as_gmsh40(binary, version)) for binary in (False, True) for version in (b"4.0", b"4")),
-    (".mesh", READ, written("medit")), (".node", READ, written("tetgen")), (".ele", READ, written("tetgen")),
-    (".inp", CONVERTED, written("abaqus")), (".msh", CONVERTED, written("ansys", binary=False)), (".msh", CONVERTED, written("ansys", binary=True)),
-    (".avs", CONVERTED, written("avsucd")), (".cgns", CONVERTED, written("cgns")), (".xml", CONVERTED, written("dolfin-xml")), (".e", CONVERTED, written("exodus")),
-    *((".f3grid", CONVERTED, written("flac3d", binary=binary)) for binary in (False, True)), (".h5m", CONVERTED, written("h5m")), (".hmf", CONVERTED, written("hmf")),
-    *((".mdpa", CONVERTED, written("mdpa", binary=binary)) for binary in (False, True)), (".med", CONVERTED, written("med")),
-    *((".bdf", CONVERTED, written("nastran", point_format=points, cell_format=cells))
-      for points, cells in (("fixed-large", "fixed-small"), ("fixed-small", "fixed-small"), ("free", "free"), ("fixed-large", "fixed-large"))),
-    (".vol", CONVERTED, written("netgen")), (".post", CONVERTED, written("permas")), (".su2", CONVERTED, written("su2")), (".dat", CONVERTED, written("tecplot")),
-    (".ugrid", CONVERTED, written("ugrid")), (".lb8.ugrid", CONVERTED, written("ugrid")), (".b8.ugrid", CONVERTED, written("ugrid")),
+    (".mesh", READ, written("medit")),
+    (".node", READ, written("tetgen")),
+    (".ele", READ, written("tetgen")),
+    (".inp", CONVERTED, written("abaqus")),
+    (".msh", CONVERTED, written("ansys", binary=False)),
+    (".msh", CONVERTED, written("ansys", binary=True)),
+    (".avs", CONVERTED, written("avsucd")),
+    (".cgns", CONVERTED, written("cgns")),
+    (".xml", CONVERTED, written("dolfin-xml")),
+    (".e", CONVERTED, written("exodus")),
+    *((".f3grid", CONVERTED, written("flac3d", binary=binary)) for binary in (False, True)),
+    (".h5m", CONVERTED, written("h5m")),
+    (".hmf", CONVERTED, written("hmf")),
+    *((".mdpa", CONVERTED, written("mdpa", binary=binary)) for binary in (False, True)),
+    (".med", CONVERTED, written("med")),
+    *(
+        (".bdf", CONVERTED, written("nastran", point_format=points, cell_format=cells))
+        for points, cells in (
+            ("fixed-large", "fixed-small"),
+            ("fixed-small", "fixed-small"),
+            ("free", "free"),
+            ("fixed-large", "fixed-large"),
+        )
+    ),
+    (".vol", CONVERTED, written("netgen")),
+    (".post", CONVERTED, written("permas")),
+    (".su2", CONVERTED, written("su2")),
+    (".dat", CONVERTED, written("tecplot")),
+    (".ugrid", CONVERTED, written("ugrid")),
+    (".lb8.ugrid", CONVERTED, written("ugrid")),
+    (".b8.ugrid", CONVERTED, written("ugrid")),
     *((".xdmf", CONVERTED, written("xdmf", data_format=form)) for form in ("XML", "Binary", "HDF")),
 ]
 
@@ -71,15 +120,24 @@ def mixed(points, tets):
     """Beside a hexahedron and a wedge of their own vertices."""
     cube = numpy.array(list(itertools.product((9.0, 10.0), repeat=3)))[[0, 4, 6, 2, 1, 5, 7, 3]]
     n = len(points)
-    return meshio.Mesh(numpy.vstack((points, cube)), [("tetra", tets), ("hexahedron", numpy.arange(n, n + 8)[None]),
-                                                      ("wedge", numpy.array([[0, 1, 3, 4, 5, 7]]) + n)])
+    return meshio.Mesh(
+        numpy.vstack((points, cube)),
+        [
+            ("tetra", tets),
+            ("hexahedron", numpy.arange(n, n + 8)[None]),
+            ("wedge", numpy.array([[0, 1, 3, 4, 5, 7]]) + n),
+        ],
+    )
 
 
 def second_order(points, tets):
     pairs = numpy.sort(tets[:, EDGES].reshape(-1, 2), axis=1)
     unique, numbers = numpy.unique(pairs, axis=0, return_inverse=True)
     middles = (points[unique[:, 0]] + points[unique[:, 1]]) / 2
-    return meshio.Mesh(numpy.vstack((points, middles)), [("tetra10", numpy.hstack((tets, numbers.reshape(-1, 6) + len(points))))])
+    return meshio.Mesh(
+        numpy.vstack((points, middles)),
+        [("tetra10", numpy.hstack((tets, numbers.reshape(-1, 6) + len(points))))],
+    )
 
 
 def with_ghosts(points, tets):
@@ -90,11 +148,20 @@ def with_ghosts(points, tets):
 
 
 CONTENTS = {  # content: option that the refusal names
-    plain: None, with_duplicates: None, torn: None, beside_surfaces: None, mixed: "--only-tetrahedra", second_order: "--corners", with_ghosts: None}
+    plain: None,
+    with_duplicates: None,
+    torn: None,
+    beside_surfaces: None,
+    mixed: "--only-tetrahedra",
+    second_order: "--corners",
+    with_ghosts: None,
+}
 
 
 def rows_of(path):
-    return [line.split() for line in path.read_text().splitlines() if line.strip() and not line.startswith("#")]
+    return [
+        line.split() for line in path.read_text().splitlines() if line.strip() and not line.startswith("#")
+    ]
 
 
 def own_meshes():
@@ -102,27 +169,47 @@ def own_meshes():
     yield "bar", *map(numpy.array, bar(3, (0, 0, 0)))
     for node in sorted((SOURCE / "scenes/meshes").glob("*.node")):
         points, tets = (rows_of(node.with_suffix(suffix))[1:] for suffix in (".node", ".ele"))
-        yield node.stem, numpy.array([row[1:4] for row in points], float), numpy.array([row[1:5] for row in tets], int) - int(points[0][0])
+        yield (
+            node.stem,
+            numpy.array([row[1:4] for row in points], float),
+            numpy.array([row[1:5] for row in tets], int) - int(points[0][0]),
+        )
 
 
 def real_meshes():
-    for path in sorted(pathlib.Path(os.environ["TANDEM_MESHES"]).rglob("*.m*sh")) if "TANDEM_MESHES" in os.environ else ():
+    for path in (
+        sorted(pathlib.Path(os.environ["TANDEM_MESHES"]).rglob("*.m*sh"))
+        if "TANDEM_MESHES" in os.environ
+        else ()
+    ):
         try:
             mesh = meshio.read(path)
         except (Exception, SystemExit):  # meshio has no type of its own
             continue
-        tets = numpy.vstack([block.data for block in mesh.cells if block.type == "tetra"] or [numpy.zeros((0, 4), int)])
+        tets = numpy.vstack(
+            [block.data for block in mesh.cells if block.type == "tetra"] or [numpy.zeros((0, 4), int)]
+        )
         if 0 < len(tets) <= MOST:
             yield path.stem, mesh.points, tets
 
 
 def drawn(count):
-    """(format, content, mesh), each content in each format, the meshes by turns; `count` evenly spaced ones of them."""
+    """(format, content, mesh), each content in each format, the meshes by turns; `count` evenly spaced ones
+    of them."""
     meshes = [*own_meshes(), *real_meshes()]
     small = [mesh for mesh in meshes if len(mesh[2]) <= 3000]
-    every = [(form, content) for content in CONTENTS for form in FORMATS if content is not with_ghosts or form[0] == ".vtu"]
+    every = [
+        (form, content)
+        for content in CONTENTS
+        for form in FORMATS
+        if content is not with_ghosts or form[0] == ".vtu"
+    ]
     # meshio writes no elements of second order to TetGen's files, and reads such a file without an end.
-    every = [(form, content) for form, content in every if content is not second_order or form[0] not in (".node", ".ele")]
+    every = [
+        (form, content)
+        for form, content in every
+        if content is not second_order or form[0] not in (".node", ".ele")
+    ]
     every += 3 * [(form, plain) for form in FORMATS if form[1] is READ]
     made = [(*one, (meshes if one[1] is plain and one[0][1] is READ else small)) for one in every]
     made = [(form, content, pool[i * 5 % len(pool)]) for i, (form, content, pool) in enumerate(made)]
@@ -141,23 +228,49 @@ class MadeMeshes(Case):
         flags = numpy.concatenate([*mesh.cell_data.get("vtkGhostType", [numpy.zeros(len(tets))])]).astype(int)
         kept = tets[(flags & 33) == 0] if path.suffix == ".vtu" and len(flags) == len(tets) else tets
         used = mesh.points[numpy.unique(kept)]
-        return {"vertices": len(mesh.points), "tetrahedra": len(kept), "duplicates": len(kept) - len(numpy.unique(numpy.sort(kept, axis=1), axis=0)),
-                "coincident": len(used) - len(numpy.unique(used + 0.0, axis=0)), "ghosts": len(tets) - len(kept),
-                "reduced": sum(len(data) for kind, data in blocks if kind == "tetra10"),
-                "other_cells": sum(len(data) for kind, data in blocks if kind in ("hexahedron", "wedge", "pyramid"))}
+        return {
+            "vertices": len(mesh.points),
+            "tetrahedra": len(kept),
+            "duplicates": len(kept) - len(numpy.unique(numpy.sort(kept, axis=1), axis=0)),
+            "coincident": len(used) - len(numpy.unique(used + 0.0, axis=0)),
+            "ghosts": len(tets) - len(kept),
+            "reduced": sum(len(data) for kind, data in blocks if kind == "tetra10"),
+            "other_cells": sum(
+                len(data) for kind, data in blocks if kind in ("hexahedron", "wedge", "pyramid")
+            ),
+        }
 
     def run_on(self, path, *options):
         out = self.work / "made.jsonl"
         out.unlink(missing_ok=True)
-        status, text, errors = tandem("run", "--mesh", path, "--device", "host", "--algorithm", "tiled", "--no-check", "--no-count", "--quiet", "--out", out, *options)
+        status, text, errors = tandem(
+            "run",
+            "--mesh",
+            path,
+            "--device",
+            "host",
+            "--algorithm",
+            "tiled",
+            "--no-check",
+            "--no-count",
+            "--quiet",
+            "--out",
+            out,
+            *options,
+        )
         if status != 0:
             self.assertEqual((status, len(errors)), (2, 1), (text, errors))
             self.assertEqual(re.findall(r"[^\x20-\x7e]", errors[0].replace(str(path), "")), [], errors)
             return errors[0]
-        record, = self.records(out)
+        (record,) = self.records(out)
         reading = record["scene"]["reading"]
-        return {**{name: record["scene"][name] for name in ("vertices", "tetrahedra")},
-                **{name: reading[name] for name in ("duplicates", "coincident", "ghosts", "reduced", "other_cells")}}
+        return {
+            **{name: record["scene"][name] for name in ("vertices", "tetrahedra")},
+            **{
+                name: reading[name]
+                for name in ("duplicates", "coincident", "ghosts", "reduced", "other_cells")
+            },
+        }
 
     def expect_read(self, path, content, counts):
         """Reads a file of a format that tandem has; without the option of its content it is refused."""
@@ -194,7 +307,9 @@ class MadeMeshes(Case):
                     self.assertEqual((status, errors), (0, []), text)
                     self.expect_read(output, content, counts)
                     converted += 1
-        print(f"{read} meshes read, {converted} refused and converted, {left} that meshio cannot write or read")
+        print(
+            f"{read} meshes read, {converted} refused and converted, {left} that meshio cannot write or read"
+        )
         self.assertGreater(read, 150 if LONG else 8)
         self.assertGreater(converted, 100 if LONG else 4)
 

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""model.py PROGRAM SOURCE: tandem.model: known coefficients, tables of microbenchmarks, bad input, and the tables of
-results/scaling."""
+"""model.py PROGRAM SOURCE: tandem.model: known coefficients, tables of microbenchmarks, bad input, and the
+tables of results/scaling."""
+
 import contextlib
 import io
 import json
@@ -17,10 +18,15 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(SOURCE / "python"))
 from tandem import model
 from tandem.model import fitting, loads, pages
+
 # Microseconds: per frame, and per unit of each count.
-KNOWN = {"refit": (15, {"tetrahedra": 2e-5}), "broad": (8, {"tile_pairs": 1e-4}), "walk": (30, {"body_pairs": 5e-3, "pairs": 4e-5}), "contact": (20,
-                                                                                                                                                 {"pairs": 1e-4}),
-         "host": (40, {"bodies": 0.05, "scene_bodies": 0.03, "sorted": 0.02})}
+KNOWN = {
+    "refit": (15, {"tetrahedra": 2e-5}),
+    "broad": (8, {"tile_pairs": 1e-4}),
+    "walk": (30, {"body_pairs": 5e-3, "pairs": 4e-5}),
+    "contact": (20, {"pairs": 1e-4}),
+    "host": (40, {"bodies": 0.05, "scene_bodies": 0.03, "sorted": 0.02}),
+}
 EXCHANGE = (50, {"messages": 3, "bytes": 2e-4})
 STAGE = {"refit": "refit", "broad": "broad", "walk": "traverse", "contact": "contact"}
 BESIDE = 20  # nanoseconds per body
@@ -38,28 +44,68 @@ def stage_ns(us, frames):
 
 def record(chance, bodies, devices, with_ranks=False, frames=2):
     """A synthetic record of an evenly partitioned scene, computed from the known coefficients."""
-    own, body_pairs, pairs = bodies // devices, int(bodies * chance.uniform(1, 12)), int(bodies * chance.uniform(500, 5000))
+    own, body_pairs, pairs = (
+        bodies // devices,
+        int(bodies * chance.uniform(1, 12)),
+        int(bodies * chance.uniform(500, 5000)),
+    )
     scene = {"key": "made", "bodies": bodies, "tetrahedra": TETRAHEDRA * bodies}
-    line = {"schema": 4, "key": "made", "status": "ok", "preset": "resident", "algorithm": "tiled", "settings": {"k": "18", "slabs": "three", "broad": "device"}, "scene": scene,
-            "partition": None,
-            "devices": [{"name": "made", "clock": "made"}] * devices, "frames": {"first": 0,
-                                                                                 "last": frames - 1}, "work": {"body_pairs": [body_pairs] * frames,
-                                                                                                               "candidate_pairs": [pairs] * frames},
-            "preparation": {"device_bytes": 1e8 + 30 * TETRAHEDRA * bodies * devices + 45 * pairs}, "ranks": devices if with_ranks else None}
+    line = {
+        "schema": 4,
+        "key": "made",
+        "status": "ok",
+        "preset": "resident",
+        "algorithm": "tiled",
+        "settings": {"k": "18", "slabs": "three", "broad": "device"},
+        "scene": scene,
+        "partition": None,
+        "devices": [{"name": "made", "clock": "made"}] * devices,
+        "frames": {"first": 0, "last": frames - 1},
+        "work": {"body_pairs": [body_pairs] * frames, "candidate_pairs": [pairs] * frames},
+        "preparation": {"device_bytes": 1e8 + 30 * TETRAHEDRA * bodies * devices + 45 * pairs},
+        "ranks": devices if with_ranks else None,
+    }
     parts = []
     for _ in range(devices):
         local_bodies = own if devices == 1 else int(own * chance.uniform(1.1, 1.6))
-        counts = loads.counts_of(scene, local_bodies, own, body_pairs / devices, pairs / devices, is_sorted=devices == 1,
-                                 known=local_bodies if with_ranks else None)
+        counts = loads.counts_of(
+            scene,
+            local_bodies,
+            own,
+            body_pairs / devices,
+            pairs / devices,
+            is_sorted=devices == 1,
+            known=local_bodies if with_ranks else None,
+        )
         us = {part: known_us(part, counts, chance) for part in KNOWN}
-        exchange = {"messages": chance.randrange(1, 20) * frames, "bytes": chance.randrange(1000, 1000000) * frames} if with_ranks else None
+        exchange = (
+            {"messages": chance.randrange(1, 20) * frames, "bytes": chance.randrange(1000, 1000000) * frames}
+            if with_ranks
+            else None
+        )
         if exchange:
-            exchange["host_ns"] = (EXCHANGE[0] * frames + 3 * exchange["messages"] + 2e-4 * exchange["bytes"]) * 1e3
-        parts.append({"ns": {"median": sum(us.values()) * frames * 1e3}, "bodies": [local_bodies] * frames, "body_pairs": [body_pairs / devices] * frames,
-                      "candidate_pairs": [pairs / devices] * frames, "exchange": exchange, "stages": stage_ns(us, frames)})
+            exchange["host_ns"] = (
+                EXCHANGE[0] * frames + 3 * exchange["messages"] + 2e-4 * exchange["bytes"]
+            ) * 1e3
+        parts.append(
+            {
+                "ns": {"median": sum(us.values()) * frames * 1e3},
+                "bodies": [local_bodies] * frames,
+                "body_pairs": [body_pairs / devices] * frames,
+                "candidate_pairs": [pairs / devices] * frames,
+                "exchange": exchange,
+                "stages": stage_ns(us, frames),
+            }
+        )
     beside = BESIDE * bodies * frames if with_ranks else 0
-    line["total_ns"] = {"median": max(l["ns"]["median"] + (l["exchange"] or {"host_ns": 0})["host_ns"] for l in parts) + beside}
-    line["stages"] = {name: {clock: {"median": ns} for clock, ns in stage.items()} for name, stage in parts[0]["stages"].items()}
+    line["total_ns"] = {
+        "median": max(l["ns"]["median"] + (l["exchange"] or {"host_ns": 0})["host_ns"] for l in parts)
+        + beside
+    }
+    line["stages"] = {
+        name: {clock: {"median": ns} for clock, ns in stage.items()}
+        for name, stage in parts[0]["stages"].items()
+    }
     if devices > 1:
         line["partition"] = {"devices": parts}
     return line
@@ -68,7 +114,11 @@ def record(chance, bodies, devices, with_ranks=False, frames=2):
 def records():
     chance = random.Random(1)
     sizes = (500, 1000, 4000, 10000, 30000)
-    return [*(record(chance, n, 1) for n in sizes), *(record(chance, n, 2) for n in sizes), *(record(chance, n, 4, True) for n in sizes)]
+    return [
+        *(record(chance, n, 1) for n in sizes),
+        *(record(chance, n, 2) for n in sizes),
+        *(record(chance, n, 4, True) for n in sizes),
+    ]
 
 
 def run_model(*arguments):
@@ -113,17 +163,23 @@ class Fit(ModelCase):
         self.assertEqual((every.bodies, every.ranks), (30000, 4))
         self.assertLess(abs(every.beyond / BESIDE - 1), 0.01)
         largest = records()[-1]
-        self.assertAlmostEqual(every.own, min(one["exchange"]["host_ns"] for one in largest["partition"]["devices"]) / 2 / 7500)
+        self.assertAlmostEqual(
+            every.own, min(one["exchange"]["host_ns"] for one in largest["partition"]["devices"]) / 2 / 7500
+        )
 
     def test_no_coefficient_is_negative(self):
         counts = [{"tetrahedra": n, "pairs": m} for n, m in ((1e6, 10), (2e6, 20), (4e6, 5), (9e6, 50))]
-        term = fitting.fitted(("tetrahedra", "pairs"), counts, [10 + c["tetrahedra"] * 2e-5 - 0.05 * c["pairs"] for c in counts])
+        term = fitting.fitted(
+            ("tetrahedra", "pairs"), counts, [10 + c["tetrahedra"] * 2e-5 - 0.05 * c["pairs"] for c in counts]
+        )
         self.assertEqual(term.per["pairs"], 0)
         self.assertGreater(min(term.fixed, term.per["tetrahedra"]), 0)
         self.assertGreater(max(term.errors), 1e-3)
 
     def test_constant_counts_have_no_coefficient(self):
-        term = fitting.fitted(("tetrahedra", "pairs"), [{"tetrahedra": n, "pairs": 7} for n in (1e5, 2e5, 3e5)], [12, 14, 16])
+        term = fitting.fitted(
+            ("tetrahedra", "pairs"), [{"tetrahedra": n, "pairs": 7} for n in (1e5, 2e5, 3e5)], [12, 14, 16]
+        )
         self.assertEqual(list(term.per), ["tetrahedra"])
 
     def test_bad_input(self):
@@ -131,29 +187,75 @@ class Fit(ModelCase):
         few = self.file("few.jsonl", good[:2])
         self.refused("2 records: too few", "--fit", few)
         self.refused("No such file", "--fit", self.work / "none.jsonl")
-        for name, lines, message in (("empty", [], "is empty"), ("text", [good[0], "no JSON\n"], "text.jsonl:2: is not JSON"), ("list", ["[]\n"],
-                                                                                                                                         ":1: is no record"),
-                                     ("half", [{**good[0], "work": None}], ":1: is no record"), ("frames", [{**good[0], "frames": {"first": 1, "last": 0}}],
-                                                                                                ":1: is no record")):
+        for name, lines, message in (
+            ("empty", [], "is empty"),
+            ("text", [good[0], "no JSON\n"], "text.jsonl:2: is not JSON"),
+            ("list", ["[]\n"], ":1: is no record"),
+            ("half", [{**good[0], "work": None}], ":1: is no record"),
+            ("frames", [{**good[0], "frames": {"first": 1, "last": 0}}], ":1: is no record"),
+        ):
             self.refused(message, "--fit", self.file(f"{name}.jsonl", lines))
         self.refused("no such group; there are: made", "--group", "none", self.file("good.jsonl", good))
         self.refused("no record of ranks", "--group", "made", self.file("alone.jsonl", good[:10]))
 
     def test_tables_of_partitions(self):
-        one = {"run_type": "iteration", "real_time": 2000.0, "own_most": 110, "ghosts_mean": 50, "ghosts_most": 90}
-        met = {"run_type": "iteration", "real_time": 9.0, "setup_bytes_most": 5000.0, "frame_bytes_most": 2500.0,
-               **{name: 4 for name in ("ghosts_mean", "ghosts_most", "neighbours_mean")}}
+        one = {
+            "run_type": "iteration",
+            "real_time": 2000.0,
+            "own_most": 110,
+            "ghosts_mean": 50,
+            "ghosts_most": 90,
+        }
+        met = {
+            "run_type": "iteration",
+            "real_time": 9.0,
+            "setup_bytes_most": 5000.0,
+            "frame_bytes_most": 2500.0,
+            **{name: 4 for name in ("ghosts_mean", "ghosts_most", "neighbours_mean")},
+        }
         other = {"run_type": "iteration", "name": "refit/host/8", "real_time": 1}
-        path = self.file("bench.json", [json.dumps({"benchmarks": [{**one, "name": "partition, parts/4/125/iterations:1"}, {**met, "name": "ghosts, ranks/8/27/iterations:1"}, other]})])
+        path = self.file(
+            "bench.json",
+            [
+                json.dumps(
+                    {
+                        "benchmarks": [
+                            {**one, "name": "partition, parts/4/125/iterations:1"},
+                            {**met, "name": "ghosts, ranks/8/27/iterations:1"},
+                            other,
+                        ]
+                    }
+                )
+            ],
+        )
         made = pages.partitions(path)
-        self.assertEqual(made["partition"].splitlines()[2:], ["| 4 | 125 | 2.00 | 4000.0 | 0.88 | 50 | 90 | 2.0 |"])
+        self.assertEqual(
+            made["partition"].splitlines()[2:], ["| 4 | 125 | 2.00 | 4000.0 | 0.88 | 50 | 90 | 2.0 |"]
+        )
         self.assertEqual(made["ghosts"].splitlines()[2:], ["| 8 | 27 | 4 | 4 | 0.4 | 4.0 | 5 | 2.5 |"])
         good = self.file("good.jsonl", records())
-        for text, expected in (("", "is not a result of scripts/bench"), ('{"benchmarks": [{"run_type": "iteration", "name": "ghosts, ranks/1/1"}]}', "is not a result of")):
+        for text, expected in (
+            ("", "is not a result of scripts/bench"),
+            (
+                '{"benchmarks": [{"run_type": "iteration", "name": "ghosts, ranks/1/1"}]}',
+                "is not a result of",
+            ),
+        ):
             self.refused(expected, "--group", "made", "--partitions", self.file("bad.json", [text]), good)
-        self.refused("scripts/bench makes it", "--group", "made", "--partitions", self.work / "none.json", good)
+        self.refused(
+            "scripts/bench makes it", "--group", "made", "--partitions", self.work / "none.json", good
+        )
         page = self.file("page.md", ["<!-- model: nothing -->\n<!-- end -->\n"])
-        self.refused("no table 'nothing'; there are: coefficients, every rank", "--group", "made", "--partitions", path, good, "--write", page)
+        self.refused(
+            "no table 'nothing'; there are: coefficients, every rank",
+            "--group",
+            "made",
+            "--partitions",
+            path,
+            good,
+            "--write",
+            page,
+        )
 
 
 class Page(ModelCase):
@@ -161,7 +263,9 @@ class Page(ModelCase):
         if not (SOURCE / "results/h100x2").exists():
             self.skipTest("results/h100x2 is not there")
         text, copy = (SOURCE / "results/scaling/README.md").read_text(), self.work / "page.md"
-        copy.write_text(re.sub(r"(<!-- model: [a-z ]+ -->).*?<!-- end -->", r"\1 <!-- end -->", text, flags=re.DOTALL))
+        copy.write_text(
+            re.sub(r"(<!-- model: [a-z ]+ -->).*?<!-- end -->", r"\1 <!-- end -->", text, flags=re.DOTALL)
+        )
         self.assertNotEqual(copy.read_text(), text)
         self.assertEqual(run_model("--write", copy), (0, "", []))
         self.assertEqual(copy.read_text(), text)

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""notebook.py PROGRAM SOURCE: the cells of python/example.ipynb run, and the committed outputs are those of scripts/notebook: of every cell the
-same kinds, and the same texts where no time is measured. They name no path or host of the machine."""
+"""notebook.py PROGRAM SOURCE: the cells of python/example.ipynb run, and the committed outputs are those of
+scripts/notebook: of every cell the same kinds, and the same texts where no time is measured. They name no
+path or host of the machine."""
+
 import json
 import os
 import re
@@ -23,7 +25,14 @@ def cells(notebook):
 
 def outputs(cell):
     """The kind, the representations and the text of each output."""
-    return [(one["output_type"], sorted(one.get("data", {})), "".join(one.get("text", one.get("data", {}).get("text/plain", "")))) for one in cell["outputs"]]
+    return [
+        (
+            one["output_type"],
+            sorted(one.get("data", {})),
+            "".join(one.get("text", one.get("data", {}).get("text/plain", ""))),
+        )
+        for one in cell["outputs"]
+    ]
 
 
 class Notebook(Case):
@@ -37,7 +46,12 @@ class Notebook(Case):
         (root / "build").mkdir()
         (root / "build/tandem").symlink_to(PROGRAM)
         out = self.work / "out.ipynb"
-        done = subprocess.run([sys.executable, root / "scripts/notebook", "--out", out], capture_output=True, text=True, env={**os.environ, "PYTHONPATH": FOLDER.name})
+        done = subprocess.run(
+            [sys.executable, root / "scripts/notebook", "--out", out],
+            capture_output=True,
+            text=True,
+            env={**os.environ, "PYTHONPATH": FOLDER.name},
+        )
         self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
         return out
 
@@ -57,15 +71,35 @@ class Notebook(Case):
 
     def test_uses_the_collider_and_shows_pictures(self):
         sources = "".join("".join(cell["source"]) for cell in cells(SOURCE / "python/example.ipynb"))
-        for call in ("tandem.Collider(", ".pairs()", ".meeting()", ".contacts()", ".update(", "worlds=", '"run"', "plot_cells("):
+        for call in (
+            "tandem.Collider(",
+            ".pairs()",
+            ".meeting()",
+            ".contacts()",
+            ".update(",
+            "worlds=",
+            '"run"',
+            "plot_cells(",
+        ):
             self.assertIn(call, sources)
-        pictures = [one["data"]["image/png"] for cell in cells(SOURCE / "python/example.ipynb") for one in cell["outputs"] if "image/png" in one.get("data", {})]
+        pictures = [
+            one["data"]["image/png"]
+            for cell in cells(SOURCE / "python/example.ipynb")
+            for one in cell["outputs"]
+            if "image/png" in one.get("data", {})
+        ]
         self.assertGreater(len(pictures), 4)
         self.assertGreater(min(map(len, pictures)), 2000)
 
     def test_names_no_machine(self):
         text = json.dumps([outputs(cell) for cell in cells(SOURCE / "python/example.ipynb")])
-        text += json.dumps([one.get("data", {}).get("text/html", "") for cell in cells(SOURCE / "python/example.ipynb") for one in cell["outputs"]])
+        text += json.dumps(
+            [
+                one.get("data", {}).get("text/html", "")
+                for cell in cells(SOURCE / "python/example.ipynb")
+                for one in cell["outputs"]
+            ]
+        )
         self.assertIsNone(re.search(r"(/work|/tmp|/home|/root|/usr|/var|/Users)/", text))
         self.assertNotIn(socket.gethostname(), text)
 

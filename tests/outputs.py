@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""outputs.py PROGRAM SOURCE: no output of a command overwrites an input or a file of records, and places that cannot be
-written are found first."""
+"""outputs.py PROGRAM SOURCE: no output of a command overwrites an input or a file of records, and places that
+cannot be written are found first."""
+
 import json
 import os
 import shutil
@@ -31,8 +32,9 @@ class Outputs(Case):
         return [path, *links]
 
     def kept(self, path, expected, *arguments, shown=None):
-        """Runs a command that must refuse `path`, its input or a file of records, under every name. `arguments` are texts, or functions of the
-        name. `shown`: the path in the message, if it is not the name."""
+        """Runs a command that must refuse `path`, its input or a file of records, under every name.
+        `arguments` are texts, or functions of the name. `shown`: the path in the message, if it is not the
+        name."""
         before = path.read_bytes()
         for name in self.names(path):
             words = [argument(name) if callable(argument) else argument for argument in arguments]
@@ -49,7 +51,9 @@ class Outputs(Case):
             if option != "--out":
                 self.kept(self.records, "is a file of records", *mesh, option, lambda name: name)
         scene = self.folder / "scene.json"
-        scene.write_text(json.dumps({"frames": 1, "meshes": {"a": {"file": "mesh.msh"}}, "bodies": [{"mesh": "a"}]}) + "\n")
+        scene.write_text(
+            json.dumps({"frames": 1, "meshes": {"a": {"file": "mesh.msh"}}, "bodies": [{"mesh": "a"}]}) + "\n"
+        )
         for path in (scene, self.mesh):
             self.kept(path, "an input", "run", scene, *ONE, "--dump-pairs", lambda name: name)
         self.kept(scene, "an input", "run", scene, *ONE, "--out", lambda name: name)
@@ -59,12 +63,16 @@ class Outputs(Case):
 
     def test_outputs_of_export(self):
         recording = self.folder / "fall.frames"
-        self.assertEqual(tandem("simulate", "glasses:bodies=2,size=2", "--steps", "2", "-o", recording, "--quiet")[0], 0)
+        self.assertEqual(
+            tandem("simulate", "glasses:bodies=2,size=2", "--steps", "2", "-o", recording, "--quiet")[0], 0
+        )
         self.kept(recording, "is an input", "export", recording, "--glb", lambda name: name)
         self.kept(recording, "is an input", "view", recording, "-o", lambda name: name)
         for option in ("--glb", "--geometry", "--chunks"):
             self.kept(self.mesh, "is an input", "export", "--mesh", self.mesh, option, lambda name: name)
-            self.kept(self.records, "is a file of records", "export", "--mesh", self.mesh, option, lambda name: name)
+            self.kept(
+                self.records, "is a file of records", "export", "--mesh", self.mesh, option, lambda name: name
+            )
         self.assertEqual(tandem("export", "--mesh", self.mesh, "--vtu", self.folder / "vtu")[0], 0)
         own = self.folder / "vtu/bodies_000000.vtu"
         self.kept(own, "is an input", "export", "--mesh", lambda name: name, "--vtu", own.parent, shown=own)
@@ -75,25 +83,58 @@ class Outputs(Case):
 
     def test_outputs_of_simulate(self):
         scene = self.folder / "scene.json"
-        scene.write_text(json.dumps({"frames": 1, "meshes": {"a": {"builtin": "jack"}}, "bodies": [{"mesh": "a"}],
-                                     "dynamics": {"materials": {"stone": 1000}, "surfaces": [{"a": "stone", "b": "stone", "friction": 0.5, "restitution": 0}]}}) + "\n")
-        self.kept(scene, "an input", "simulate", scene, "--steps", "1", "--quiet", "--record", lambda name: name)
-        self.kept(self.records, "exists", "simulate", "glasses:bodies=2,size=2", "--steps", "1", "--quiet", "-o", lambda name: name)
+        scene.write_text(
+            json.dumps(
+                {
+                    "frames": 1,
+                    "meshes": {"a": {"builtin": "jack"}},
+                    "bodies": [{"mesh": "a"}],
+                    "dynamics": {
+                        "materials": {"stone": 1000},
+                        "surfaces": [{"a": "stone", "b": "stone", "friction": 0.5, "restitution": 0}],
+                    },
+                }
+            )
+            + "\n"
+        )
+        self.kept(
+            scene, "an input", "simulate", scene, "--steps", "1", "--quiet", "--record", lambda name: name
+        )
+        self.kept(
+            self.records,
+            "exists",
+            "simulate",
+            "glasses:bodies=2,size=2",
+            "--steps",
+            "1",
+            "--quiet",
+            "-o",
+            lambda name: name,
+        )
 
     def test_pages(self):
         plan = SOURCE / "results/h200/pile.jsonl"
         self.kept(self.records, "is an input", "report", self.records, "-o", lambda name: name)
         self.kept(self.records, "is a file of records", "report", plan, "-o", lambda name: name)
-        self.kept(self.records, "is an input", "report", plan, "--against", self.records, "-o", lambda name: name)
+        self.kept(
+            self.records, "is an input", "report", plan, "--against", self.records, "-o", lambda name: name
+        )
         self.kept(self.mesh, "is an input", "view", "--mesh", self.mesh, "-o", lambda name: name)
-        self.kept(self.records, "is a file of records", "view", "plates", "--frames", "20", "-o", lambda name: name)
+        self.kept(
+            self.records, "is a file of records", "view", "plates", "--frames", "20", "-o", lambda name: name
+        )
         scene = self.folder / "scene.json"
-        scene.write_text(json.dumps({"frames": 1, "meshes": {"a": {"file": "mesh.msh"}}, "bodies": [{"mesh": "a"}]}))
+        scene.write_text(
+            json.dumps({"frames": 1, "meshes": {"a": {"file": "mesh.msh"}}, "bodies": [{"mesh": "a"}]})
+        )
         self.kept(self.mesh, "is an input", "view", scene, "-o", lambda name: name)
         self.kept(self.mesh, "is an input", "report", plan, "--scene", scene, "-o", lambda name: name)
 
     def test_folders_of_pages_and_figures(self):
-        for name, command in (("index.html", ("paper", "--device", "host", "--steps", "1", "-o")), ("bars.svg", ("accuracy", "plates", "--frames", "20", *ONE, "--figures"))):
+        for name, command in (
+            ("index.html", ("paper", "--device", "host", "--steps", "1", "-o")),
+            ("bars.svg", ("accuracy", "plates", "--frames", "20", *ONE, "--figures")),
+        ):
             folder = self.folder / name.partition(".")[0]
             folder.mkdir()
             self.assertTrue(self.records.exists())
@@ -107,7 +148,17 @@ class Outputs(Case):
         empty, link = self.folder / "empty.csv", self.folder / "link.csv"
         empty.touch()
         os.link(empty, link)
-        self.bad("is another output", "run", "--mesh", self.mesh, *ONE, "--dump-pairs", empty, "--dump-contacts", link)
+        self.bad(
+            "is another output",
+            "run",
+            "--mesh",
+            self.mesh,
+            *ONE,
+            "--dump-pairs",
+            empty,
+            "--dump-contacts",
+            link,
+        )
 
     def test_records_are_appended(self):
         for _ in range(2):
@@ -118,17 +169,35 @@ class Outputs(Case):
     def test_places_that_cannot_be_written(self):
         long, missing = self.folder / ("n" * 250), self.folder / "missing/output"
         plan = SOURCE / "results/h200/pile.jsonl"
-        commands = [("run", "--mesh", self.mesh, *ONE, option) for option in ("--out", "--dump-pairs", "--trace")]
-        commands += [("export", "--mesh", self.mesh, option) for option in ("--glb", "--geometry", "--chunks")]
-        commands += [("simulate", "glasses:bodies=2,size=2", "--steps", "1", "--quiet", option) for option in ("-o", "--record")]
-        commands += [("report", plan, "-o"), ("view", "plates", "--frames", "20", "-o"), ("export", plan, "--csv")]
+        commands = [
+            ("run", "--mesh", self.mesh, *ONE, option) for option in ("--out", "--dump-pairs", "--trace")
+        ]
+        commands += [
+            ("export", "--mesh", self.mesh, option) for option in ("--glb", "--geometry", "--chunks")
+        ]
+        commands += [
+            ("simulate", "glasses:bodies=2,size=2", "--steps", "1", "--quiet", option)
+            for option in ("-o", "--record")
+        ]
+        commands += [
+            ("report", plan, "-o"),
+            ("view", "plates", "--frames", "20", "-o"),
+            ("export", plan, "--csv"),
+        ]
         for command in commands:
-            for path, reason in ((missing, "No such file or directory"), (self.folder / ("n" * 256), "File name too long")):
+            for path, reason in (
+                (missing, "No such file or directory"),
+                (self.folder / ("n" * 256), "File name too long"),
+            ):
                 self.bad([str(path), "cannot be written", reason], *command, path)
         for command in [commands[0], *commands[6:10]]:  # a file beside the output has a longer name
             self.bad([str(long), "File name too long"], *command, long)
             self.assertFalse(long.exists())
-        for command in (("report", plan, "-o"), ("view", "plates", "--frames", "20", "-o"), ("export", plan, "--csv")):
+        for command in (
+            ("report", plan, "-o"),
+            ("view", "plates", "--frames", "20", "-o"),
+            ("export", plan, "--csv"),
+        ):
             self.bad("is a folder", *command, self.folder)
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Waiting for processes without limits that a loaded machine misses: a process counts as hung by its own processor time,
-which stands still while other jobs run."""
+"""Waiting for processes without limits that a loaded machine misses: a process counts as hung by its own
+processor time, which stands still while other jobs run."""
+
 import os
 import pathlib
 import threading
@@ -15,7 +16,8 @@ class Hung(Exception):
 
 
 def state_of(process):
-    """(processor seconds of a process with its ended children, whether a thread runs or waits for a processor or a disk)."""
+    """(processor seconds of a process with its ended children, whether a thread runs or waits for a processor
+    or a disk)."""
     folder = pathlib.Path("/proc") / str(process)
     fields = (folder / "stat").read_text().rsplit(")", 1)[1].split()
     states = []
@@ -28,8 +30,8 @@ def state_of(process):
 
 
 def communicate(process, seconds, asleep=ASLEEP):
-    """As process.communicate(). Kills the process and raises Hung after `seconds` of its processor time, or after `asleep`
-    seconds without any."""
+    """As process.communicate(). Kills the process and raises Hung after `seconds` of its processor time, or
+    after `asleep` seconds without any."""
     why = []
     ended = threading.Event()
 
@@ -43,7 +45,11 @@ def communicate(process, seconds, asleep=ASLEEP):
             if active or now != used:
                 used, since = now, time.monotonic()
             if used > seconds or time.monotonic() - since > asleep:
-                why.append(f"{used:.1f} s of processor time" if used > seconds else f"{asleep} s without any processor time")
+                why.append(
+                    f"{used:.1f} s of processor time"
+                    if used > seconds
+                    else f"{asleep} s without any processor time"
+                )
                 process.kill()
                 return
 

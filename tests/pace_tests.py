@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """pace_tests.py PROGRAM SOURCE: the rules by which tests take a process for hung (tests/pace.py)."""
+
 import os
 import pathlib
 import re
@@ -14,12 +15,15 @@ SOURCE = pathlib.Path(sys.argv[2])
 
 
 def start(text):
-    return subprocess.Popen([sys.executable, "-c", text], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    return subprocess.Popen(
+        [sys.executable, "-c", text], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
 
 
 class Pace(unittest.TestCase):
     def test_ctest_has_no_limits(self):
-        """A loaded machine misses a limit of ctest, which counts the clock's time; listing cases during the build needs one."""
+        """A loaded machine misses a limit of ctest, which counts the clock's time; listing cases during the
+        build needs one."""
         for path in (SOURCE / "tests").rglob("CMakeLists.txt"):
             self.assertEqual(re.findall(r"(?<!DISCOVERY_)TIMEOUT +\d+", path.read_text()), [], path)
 
@@ -43,7 +47,9 @@ class Pace(unittest.TestCase):
         one = {min(os.sched_getaffinity(0))}
         busy = [start(f"import os; os.sched_setaffinity(0, {one})\nwhile True: pass") for _ in range(8)]
         try:
-            process = start(f"import os, time; os.sched_setaffinity(0, {one})\nwhile time.process_time() < 0.5: pass")
+            process = start(
+                f"import os, time; os.sched_setaffinity(0, {one})\nwhile time.process_time() < 0.5: pass"
+            )
             self.assertEqual(pace.communicate(process, 2, asleep=1), ("", ""))
         finally:
             for other in busy:

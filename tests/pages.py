@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""pages.py PROGRAM SOURCE: numbers, tables, pictures, commands and quotes of committed pages equal what they come from
-(tandem.answer, scripts/tried, scripts/pictures). Also checks the committed microbenchmarks."""
+"""pages.py PROGRAM SOURCE: numbers, tables, pictures, commands and quotes of committed pages equal what they
+come from (tandem.answer, scripts/tried, scripts/pictures). Also checks the committed microbenchmarks."""
+
 import collections
 import copy
 import functools
@@ -22,11 +23,14 @@ QUOTE = re.compile(r"(?s)<!-- quote: (\S+) -->\n```\w+\n(.*?)```")
 def stands_in(quote, lines):
     """Whether the lines of a quote are consecutive lines of a file, ignoring their common indentation."""
     own = textwrap.dedent(quote).splitlines()
-    return bool(own) and any(textwrap.dedent("\n".join(lines[i:i + len(own)])).splitlines() == own for i in range(len(lines)))
+    return bool(own) and any(
+        textwrap.dedent("\n".join(lines[i : i + len(own)])).splitlines() == own for i in range(len(lines))
+    )
 
 
 def wrong_quotes(page):
-    """Errors in the blocks of a page that follow <!-- quote: FILE -->; every block of C++ must be such a quote."""
+    """Errors in the blocks of a page that follow <!-- quote: FILE -->; every block of C++ must be such a
+    quote."""
     quotes, blocks = QUOTE.findall(page), page.count("```cpp")
     of_cpp = sum(name.endswith((".cpp", ".h")) for name, _ in quotes)
     wrong = [f"{blocks} blocks of C++ and {of_cpp} quotes of it"] if blocks != of_cpp else []
@@ -58,14 +62,22 @@ class Pages(ScriptCase):
         """Their page too; and what files of something else give."""
         folder, copy = SOURCE / "results/h100", self.work / "schedules.md"
         text = (folder / "README.md").read_text()
-        copy.write_text(re.sub(r"(<!-- schedules: [a-z ]+ -->).*?<!-- end -->", r"\1 <!-- end -->", text, flags=re.DOTALL))
+        copy.write_text(
+            re.sub(r"(<!-- schedules: [a-z ]+ -->).*?<!-- end -->", r"\1 <!-- end -->", text, flags=re.DOTALL)
+        )
         self.assertNotEqual(copy.read_text(), text)
         files = folder / "schedules.jsonl", folder / "published.jsonl"
         self.assertEqual(script("schedules", *files, "--write", copy), (0, "", []))
         self.assertEqual(copy.read_text(), text)
-        # Composed by hand: 761 batches of 30 of the 22,824 body pairs, and the upload of one of the ten batches that were measured.
-        records = [record for record in committed("h100/published.jsonl") if "glasses" in record["scene"]["key"]]
-        small, part = (next(r for r in records if r["settings"].get("queue_bytes") == size) for size in ("4194304", "3019898880"))
+        # Composed by hand: 761 batches of 30 of the 22,824 body pairs, and the upload of one of the ten
+        # batches that were measured.
+        records = [
+            record for record in committed("h100/published.jsonl") if "glasses" in record["scene"]["key"]
+        ]
+        small, part = (
+            next(r for r in records if r["settings"].get("queue_bytes") == size)
+            for size in ("4194304", "3019898880")
+        )
         middle = lambda record, *path: sorted(functools.reduce(dict.get, path, record)["samples"])[1] / 1e6
         whole = middle(small, "total_ns") + 761 * middle(part, "stages", "write", "host_ns") / 10
         self.assertIn(f"| {whole:,.0f} (composed)", text)
@@ -77,31 +89,49 @@ class Pages(ScriptCase):
             copy = self.work / "page.md"
             text = (SOURCE / page).read_text()
             self.assertIn("<!-- answer: ", text)
-            copy.write_text(re.sub(r"(<!-- answer: [a-z ]+ -->).*?<!-- end -->", r"\1 <!-- end -->", text, flags=re.DOTALL))
+            copy.write_text(
+                re.sub(
+                    r"(<!-- answer: [a-z ]+ -->).*?<!-- end -->", r"\1 <!-- end -->", text, flags=re.DOTALL
+                )
+            )
             self.assertNotEqual(copy.read_text(), text)
             self.assertEqual(script("answer", plan, "--write", copy), (0, "", []))
             self.assertEqual(copy.read_text(), text, page)
         self.tables_of_schedules()
         copy.write_text("<!-- answer: nothing -->\n<!-- end -->\n")
         pile = SOURCE / "results/h200/pile.jsonl"
-        for arguments, expected in (((plan, "--write", copy), "no table 'nothing'"), ((plan, "--write", self.work / "none.md"), "none.md: cannot be read"),
-                                    ((self.work / "none.jsonl",), "No such file"), ((copy,), "is not JSON"), ((pile,), "pile.jsonl:1: is no record of a cell of the plan"),
-                                    ((plan, "--picture"), "expected one argument"), ((), "arguments are required")):
+        for arguments, expected in (
+            ((plan, "--write", copy), "no table 'nothing'"),
+            ((plan, "--write", self.work / "none.md"), "none.md: cannot be read"),
+            ((self.work / "none.jsonl",), "No such file"),
+            ((copy,), "is not JSON"),
+            ((pile,), "pile.jsonl:1: is no record of a cell of the plan"),
+            ((plan, "--picture"), "expected one argument"),
+            ((), "arguments are required"),
+        ):
             self.refused("answer", expected, *arguments)
         self.refused("answer", "none/a.svg: cannot be written", plan, "--picture", self.work / "none/a.svg")
         few = self.file("few.jsonl", committed("h200/plan.jsonl")[:3])
-        self.refused("answer", "--picture needs all scenes of the plan", few, "--picture", self.work / "few.svg")
+        self.refused(
+            "answer", "--picture needs all scenes of the plan", few, "--picture", self.work / "few.svg"
+        )
 
     def test_the_table_of_trials_equals_its_lines(self):
         tried, copy = SOURCE / "results/tried.jsonl", self.work / "page.md"
         text = (SOURCE / "README.md").read_text()
-        copy.write_text(re.sub(r"<!-- tried -->.*?<!-- end -->", "<!-- tried --><!-- end -->", text, flags=re.DOTALL))
+        copy.write_text(
+            re.sub(r"<!-- tried -->.*?<!-- end -->", "<!-- tried --><!-- end -->", text, flags=re.DOTALL)
+        )
         self.assertNotEqual(copy.read_text(), text)
         self.assertEqual(script("tried", tried, "--write", copy), (0, "", []))
         self.assertEqual(copy.read_text(), text)
         line = json.loads(tried.read_text().splitlines()[0])
         bad = self.work / "tried.jsonl"
-        for lines, message in (("", "has no lines"), ("{}\n", "tried.jsonl:1: no line of what was tried"), (json.dumps({**line, "count": "3"}), "tried.jsonl:1: no line")):
+        for lines, message in (
+            ("", "has no lines"),
+            ("{}\n", "tried.jsonl:1: no line of what was tried"),
+            (json.dumps({**line, "count": "3"}), "tried.jsonl:1: no line"),
+        ):
             bad.write_text(lines)
             status, _, errors = script("tried", bad)
             self.assertEqual((status, len(errors)), (1, 1), errors)
@@ -114,7 +144,9 @@ class Pages(ScriptCase):
         """Compares words, which are comments beside their outlines; the outlines depend on the library."""
         words = lambda path: re.findall(r"<!-- (.*?) -->", path.read_text())
         drawn = self.work / "answer.svg"
-        self.assertEqual(script("answer", SOURCE / "results/h200/plan.jsonl", "--picture", drawn), (0, "", []))
+        self.assertEqual(
+            script("answer", SOURCE / "results/h200/plan.jsonl", "--picture", drawn), (0, "", [])
+        )
         self.assertGreater(len(words(drawn)), 10)
         self.assertEqual(words(SOURCE / "results/h200/answer.svg"), words(drawn))
 
@@ -126,13 +158,23 @@ class Pages(ScriptCase):
         cells[scene, "18", "chunked"] = copied = copy.copy(cells[scene, "18", "tiled"])
         copied.total = {number: ms * (1.001 if number % 2 else 0.998) for number, ms in copied.total.items()}
         copied.key = "another"
-        self.assertEqual(answer.title_of(cells, names), f"Fastest in {len(answer.SCENES) - 1} of {len(answer.SCENES)} scenes: tiled; "
-                         "in 1: not told apart (NVIDIA H200)")
+        self.assertEqual(
+            answer.title_of(cells, names),
+            f"Fastest in {len(answer.SCENES) - 1} of {len(answer.SCENES)} scenes: tiled; "
+            "in 1: not told apart (NVIDIA H200)",
+        )
 
     def test_numbers_of_the_readme_are_generated(self):
         """Measured numbers occur only between the marks of tandem.answer."""
-        text = re.sub(r"<!-- answer: [a-z ]+ -->.*?<!-- end -->|^    .*?$", "", (SOURCE / "README.md").read_text(), flags=re.DOTALL | re.MULTILINE)
-        self.assertEqual(re.findall(r"\d[\d.,]* ?(?:%|ms|us|ns|s|GB|GiB|MB|times|minutes|seconds)(?![A-Za-z])", text), [])
+        text = re.sub(
+            r"<!-- answer: [a-z ]+ -->.*?<!-- end -->|^    .*?$",
+            "",
+            (SOURCE / "README.md").read_text(),
+            flags=re.DOTALL | re.MULTILINE,
+        )
+        self.assertEqual(
+            re.findall(r"\d[\d.,]* ?(?:%|ms|us|ns|s|GB|GiB|MB|times|minutes|seconds)(?![A-Za-z])", text), []
+        )
 
     def test_quotes_equal_the_examples(self):
         """The user guide quotes every example, and every quote is in its file."""
@@ -153,7 +195,10 @@ class Pages(ScriptCase):
         self.assertEqual(wrong_quotes(page(*(line[4:] for line in lines if line.startswith("    ")))), [])
         for quote in ([lines[0] + ";"], [lines[0], lines[2]], []):
             self.assertEqual(wrong_quotes(page(*quote)), [f"{name}: has no such lines: {(quote or [''])[0]}"])
-        self.assertEqual(wrong_quotes(page(lines[0]).replace(name, "scripts/examples/absent.h")), ["scripts/examples/absent.h: no such file"])
+        self.assertEqual(
+            wrong_quotes(page(lines[0]).replace(name, "scripts/examples/absent.h")),
+            ["scripts/examples/absent.h: no such file"],
+        )
         self.assertEqual(wrong_quotes("```cpp\nint i;\n```\n"), ["1 blocks of C++ and 0 quotes of it"])
         self.assertEqual(wrong_quotes(f"<!-- quote: {name} -->\ntext\n"), ["1 marks and 0 quotes"])
 
@@ -169,7 +214,10 @@ class Pages(ScriptCase):
         repetitions = {}
         for one in result["benchmarks"]:
             self.assertIn(one["run_type"], ("iteration", "aggregate"))
-            self.assertTrue({"name", "run_name", "family_index", "per_family_instance_index", "repetitions"} <= set(one), one)
+            self.assertTrue(
+                {"name", "run_name", "family_index", "per_family_instance_index", "repetitions"} <= set(one),
+                one,
+            )
             if one["run_type"] == "aggregate":
                 self.assertIn("aggregate_name", one)
                 continue
@@ -183,9 +231,19 @@ class Pages(ScriptCase):
             self.assertEqual(sorted(own), list(range(times)), name)
         self.assertGreater(len(repetitions), 50)
         compare = shutil.which("compare.py", path="/usr/share/benchmark")
-        if compare and subprocess.run(["/usr/bin/python3", "-c", "import numpy, scipy"], capture_output=True).returncode == 0:
+        if (
+            compare
+            and subprocess.run(
+                ["/usr/bin/python3", "-c", "import numpy, scipy"], capture_output=True
+            ).returncode
+            == 0
+        ):
             file = SOURCE / "results/cpu/bench.json"
-            done = subprocess.run(["/usr/bin/python3", compare, "--no-color", "benchmarks", file, file], capture_output=True, text=True)
+            done = subprocess.run(
+                ["/usr/bin/python3", compare, "--no-color", "benchmarks", file, file],
+                capture_output=True,
+                text=True,
+            )
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertRegex(done.stdout, r"OVERALL_GEOMEAN +\+0.0000")
 

@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""paper.py PROGRAM SOURCE: the paper's tables as data agree with each other and with the output of scripts/paper."""
+"""paper.py PROGRAM SOURCE: the paper's tables as data agree with each other and with the output of
+scripts/paper."""
+
 import csv
 import subprocess
 import sys
@@ -29,7 +31,9 @@ class Paper(unittest.TestCase):
         self.assertEqual(len(times), 2 * len(rows(4)))
         odd = []
         for factors in rows(4):
-            one, other = (times[factors["scene"], factors["gpu"], algorithm] for algorithm in ("gproximity", "chunked"))
+            one, other = (
+                times[factors["scene"], factors["gpu"], algorithm] for algorithm in ("gproximity", "chunked")
+            )
             for what, column in (("launches", "launches"), ("write", "write_s")):
                 quotient, digit = float(one[column]) / float(other[column]), 0.005 / float(other[column])
                 if abs(quotient / float(factors[what]) - 1) > 0.2 + digit:
@@ -46,7 +50,12 @@ class Paper(unittest.TestCase):
             for what in ("read", "write"):
                 if row[f"{what}_min"]:
                     percent = 100 * float(row[f"{what}_min"]) / float(row["total_min"])
-                    self.assertAlmostEqual(percent, float(row[f"{what}_percent"]), delta=0.01 + 0.5 / float(row["total_min"]), msg=f"{row}")
+                    self.assertAlmostEqual(
+                        percent,
+                        float(row[f"{what}_percent"]),
+                        delta=0.01 + 0.5 / float(row["total_min"]),
+                        msg=f"{row}",
+                    )
 
     def test_parts_of_a_step_stay_below_the_whole(self):
         """Kernels of Table 7 take no more time than their phases in Table 3."""
@@ -54,16 +63,24 @@ class Paper(unittest.TestCase):
         for row in rows(7):
             phase = phases[row["scene"], row["gpu"]]
             total = float(phase["total_min"]) / 100
-            kernels = {name: float(row[f"{name}_min"] or 0) for name in ("transform", "refit", "traverse", "contact")}
-            self.assertLess(kernels["transform"] + kernels["refit"], float(phase["initialization_percent"]) * total + 0.02)
-            self.assertLess(kernels["traverse"] + kernels["contact"], float(phase["narrow_percent"]) * total + 0.02)
+            kernels = {
+                name: float(row[f"{name}_min"] or 0) for name in ("transform", "refit", "traverse", "contact")
+            }
+            self.assertLess(
+                kernels["transform"] + kernels["refit"], float(phase["initialization_percent"]) * total + 0.02
+            )
+            self.assertLess(
+                kernels["traverse"] + kernels["contact"], float(phase["narrow_percent"]) * total + 0.02
+            )
             self.assertLess(sum(float(phase[name]) for name in phase if name.endswith("_percent")), 100)
 
     def test_scenes_are_those_of_table_1(self):
         scenes = {row["scene"]: row for row in rows(1)}
         self.assertEqual(set(scenes), {row["scene"] for number in (3, 4) for row in rows(number)})
         for row in scenes.values():
-            self.assertGreater(float(row["contacts_thousand"]), 102 * float(row["median_contacts_a_step_thousand"]))
+            self.assertGreater(
+                float(row["contacts_thousand"]), 102 * float(row["median_contacts_a_step_thousand"])
+            )
 
 
 if __name__ == "__main__":

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""paper_command.py PROGRAM SOURCE: tandem paper: steps are listed, run once, resumed and repeated; a failing step is
-reported and does not stop the others. The committed tables and verdicts equal those of the committed records; in the long
-form, every committed file is drawn again. Bad use gives one line."""
+"""paper_command.py PROGRAM SOURCE: tandem paper: steps are listed, run once, resumed and repeated; a failing
+step is reported and does not stop the others. The committed tables and verdicts equal those of the committed
+records; in the long form, every committed file is drawn again. Bad use gives one line."""
+
 import csv
 import json
 import os
@@ -24,7 +25,13 @@ from tandem.paper.folder import Folder
 from tandem.paper.measuring import MeasuredFolder, chosen, steps_of
 
 COMMITTED = SOURCE / "results/h200/paper"
-FILES = ["index.html", "verdicts.md", "claims.csv", *(f"table{i}.csv" for i in range(1, 8)), *(f"figure{i}.{kind}" for i in range(1, 15) for kind in ("svg", "csv"))]
+FILES = [
+    "index.html",
+    "verdicts.md",
+    "claims.csv",
+    *(f"table{i}.csv" for i in range(1, 8)),
+    *(f"figure{i}.{kind}" for i in range(1, 15) for kind in ("svg", "csv")),
+]
 
 
 def paper(*words, code=0):
@@ -64,15 +71,25 @@ class Paper(unittest.TestCase):
         self.assertEqual(names(self.number("thresholds")), ["thresholds"])
         self.assertEqual(names("1:2,1"), ["ceilings", "sim-funnel"])
         self.assertEqual(len(names("")), len(steps))
-        for number in (*(f"table{i}" for i in range(1, 8)), *(f"figure{i}" for i in (1, 2, 3, 4, 5, 6, 9, 10, 11, 12, 13))):
+        for number in (
+            *(f"table{i}" for i in range(1, 8)),
+            *(f"figure{i}" for i in (1, 2, 3, 4, 5, 6, 9, 10, 11, 12, 13)),
+        ):
             self.assertTrue(names(number), number)
 
     def test_bad_use_is_one_line(self):
-        for words, says in (((), "no folder"), (("-o", self.folder, "--size", "huge"), "--size huge: give small or full"),
-                            (("-o", self.folder, "--device", "cuda:99"), "cuda:99"),
-                            ((*self.host, "--steps", "0:3"), "--steps 0:3"), ((*self.host, "--steps", "3:1"), "--steps 3:1"), ((*self.host, "--steps", "x"), "--steps x"),
-                            ((*self.host, "--steps", "1:999"), "give N or FIRST:LAST"), ((*self.host, "--steps", "1,figure99"), "figure99 is no step"), (("-o", self.folder, "--draw-only", "--again"), "--again"),
-                            (("-o", self.folder / "none", "--draw-only"), "steps.jsonl")):
+        for words, says in (
+            ((), "no folder"),
+            (("-o", self.folder, "--size", "huge"), "--size huge: give small or full"),
+            (("-o", self.folder, "--device", "cuda:99"), "cuda:99"),
+            ((*self.host, "--steps", "0:3"), "--steps 0:3"),
+            ((*self.host, "--steps", "3:1"), "--steps 3:1"),
+            ((*self.host, "--steps", "x"), "--steps x"),
+            ((*self.host, "--steps", "1:999"), "give N or FIRST:LAST"),
+            ((*self.host, "--steps", "1,figure99"), "figure99 is no step"),
+            (("-o", self.folder, "--draw-only", "--again"), "--again"),
+            (("-o", self.folder / "none", "--draw-only"), "steps.jsonl"),
+        ):
             error = paper(*words, code=2).stderr
             self.assertEqual(error.count("\n"), 1, error)
             self.assertIn(says, error)
@@ -88,12 +105,31 @@ class Paper(unittest.TestCase):
         self.assertEqual(self.steps(), first)
         paper(*self.host, "--steps", step, "--measure-only", "--again")
         self.assertEqual(len(self.steps()), 2)
-        self.assertIn("has results of size small on host", paper(*self.host, "--size", "full", "--dry-run", code=2).stderr)
+        self.assertIn(
+            "has results of size small on host",
+            paper(*self.host, "--size", "full", "--dry-run", code=2).stderr,
+        )
 
     def test_measuring_needs_the_standard_library_only(self):
         step = self.number("chunks-morton")
-        done = subprocess.run(["/usr/bin/python3", "-S", "-I", PROGRAM.parent / "libexec/tandem/paper", "-o", self.folder, "--device", "host", "--steps", step,
-                               "--measure-only"], capture_output=True, text=True, env={"TANDEM_PROGRAM": str(PROGRAM)})
+        done = subprocess.run(
+            [
+                "/usr/bin/python3",
+                "-S",
+                "-I",
+                PROGRAM.parent / "libexec/tandem/paper",
+                "-o",
+                self.folder,
+                "--device",
+                "host",
+                "--steps",
+                step,
+                "--measure-only",
+            ],
+            capture_output=True,
+            text=True,
+            env={"TANDEM_PROGRAM": str(PROGRAM)},
+        )
         self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
         self.assertEqual([s["exit"] for s in self.steps()], [0])
 
@@ -103,9 +139,13 @@ class Paper(unittest.TestCase):
         journal, whole = self.folder / "steps.jsonl", (self.folder / "steps.jsonl").read_text()
         journal.write_text(whole + '{"step": "half')
         paper(*self.host, "--steps", step, "--measure-only")
-        self.assertEqual((journal.read_text(), (self.folder / "steps.jsonl.torn").read_text()), (whole, '{"step": "half\n'))
+        self.assertEqual(
+            (journal.read_text(), (self.folder / "steps.jsonl.torn").read_text()), (whole, '{"step": "half\n')
+        )
         journal.write_text("no JSON\n")
-        self.assertIn("steps.jsonl:1: is not a line of 'tandem paper'", paper(*self.host, "--dry-run", code=2).stderr)
+        self.assertIn(
+            "steps.jsonl:1: is not a line of 'tandem paper'", paper(*self.host, "--dry-run", code=2).stderr
+        )
 
     def test_a_failing_step_is_reported_and_stops_no_other(self):
         first = self.number("glb-tower")  # needs a recording that does not exist
@@ -130,7 +170,11 @@ class Paper(unittest.TestCase):
     @unittest.skipUnless(LONG, "simulates")
     def test_a_simulation_resumes_after_a_signal(self):
         step = self.number("sim-tower")
-        running = subprocess.Popen([PROGRAM, "paper", *map(str, self.host), "--steps", step, "--measure-only"], stderr=subprocess.PIPE, text=True)
+        running = subprocess.Popen(
+            [PROGRAM, "paper", *map(str, self.host), "--steps", step, "--measure-only"],
+            stderr=subprocess.PIPE,
+            text=True,
+        )
         recording = self.folder / "tower.frames.checkpoint"
         while not recording.exists() and running.poll() is None:
             time.sleep(0.05)
@@ -139,7 +183,9 @@ class Paper(unittest.TestCase):
         self.assertEqual(running.returncode, 143)
         paper(*self.host, "--steps", step, "--measure-only")
         self.assertEqual(self.steps()[-1]["exit"], 0)
-        lines = [json.loads(line) for line in (self.folder / "records/sim-tower.jsonl").read_text().splitlines()]
+        lines = [
+            json.loads(line) for line in (self.folder / "records/sim-tower.jsonl").read_text().splitlines()
+        ]
         self.assertEqual(sorted({line["step"] for line in lines if line["kind"] == "step"}), list(range(150)))
 
     def equal_files(self, names):
@@ -156,7 +202,11 @@ class Paper(unittest.TestCase):
     def test_markup_is_escaped(self):
         shutil.copytree(COMMITTED, self.folder, ignore=shutil.ignore_patterns("records", "*.svg", "*.png"))
         steps = self.steps()
-        steps[0]["says"], steps[0]["command"], steps[0]["exit"] = "<img src=x onerror=alert(1)>", "tandem </code><script>", 3
+        steps[0]["says"], steps[0]["command"], steps[0]["exit"] = (
+            "<img src=x onerror=alert(1)>",
+            "tandem </code><script>",
+            3,
+        )
         (self.folder / "steps.jsonl").write_text("".join(json.dumps(step) + "\n" for step in steps))
         folder = Folder(self.folder)
         page.write(folder, [], [], claims.all_claims(folder))

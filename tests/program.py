@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Helpers shared by tests of the program: PROGRAM and SOURCE (the two arguments of each test), running the program,
-meshes, a test case."""
+"""Helpers shared by tests of the program: PROGRAM and SOURCE (the two arguments of each test), running the
+program, meshes, a test case."""
+
 import csv
 import itertools
 import json
@@ -25,7 +26,10 @@ SOURCE = pathlib.Path(sys.argv[2]).resolve()
 LONG = "TANDEM_LONG_FORM" in os.environ
 os.environ.pop("COLUMNS", None)  # tables have their default width
 # Capacities for a million pairs, and queues to match, would take the host most of the time for so few pairs.
-SMALL = {name: 65536 for name in ("pair_capacity", "contact_capacity", "queue_bytes", "seed_capacity", "tile_pair_capacity")}
+SMALL = {
+    name: 65536
+    for name in ("pair_capacity", "contact_capacity", "queue_bytes", "seed_capacity", "tile_pair_capacity")
+}
 
 
 def cells_of(text):
@@ -38,34 +42,67 @@ def sets(settings):
 
 
 def tandem(*arguments, environment=None, address_space=None):
-    """Returns (exit code, standard output, lines of standard error without PoCL's own). `address_space` limits the
-    bytes of address space. A run takes one sample per cell unless the arguments choose otherwise: the default of
-    ten rounds is for measurements."""
+    """Returns (exit code, standard output, lines of standard error without PoCL's own). `address_space`
+    limits the bytes of address space. A run takes one sample per cell unless the arguments choose otherwise:
+    the default of ten rounds is for measurements."""
     # a plan has its own stopping criterion
     is_plan = any(str(argument).endswith("plan.json") for argument in arguments)
-    if arguments[:1] == ("run",) and not is_plan and not {"--repeat", "--noise", "--seconds", "--profile"} & set(arguments):
+    if (
+        arguments[:1] == ("run",)
+        and not is_plan
+        and not {"--repeat", "--noise", "--seconds", "--profile"} & set(arguments)
+    ):
         arguments = ("run", "--repeat", 1, *arguments[1:])
-    limit = (lambda: resource.setrlimit(resource.RLIMIT_AS, (address_space, address_space))) if address_space else None
-    done = subprocess.run([str(PROGRAM), *map(str, arguments)], capture_output=True, text=True,
-                          env={**os.environ, **(environment or {})}, preexec_fn=limit)
-    lines = [line for line in done.stderr.splitlines() if line.strip() and not line.rstrip().endswith("generated.")]
+    limit = (
+        (lambda: resource.setrlimit(resource.RLIMIT_AS, (address_space, address_space)))
+        if address_space
+        else None
+    )
+    done = subprocess.run(
+        [str(PROGRAM), *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        env={**os.environ, **(environment or {})},
+        preexec_fn=limit,
+    )
+    lines = [
+        line for line in done.stderr.splitlines() if line.strip() and not line.rstrip().endswith("generated.")
+    ]
     return done.returncode, done.stdout, lines
 
 
 def tried(what, count, unit, where="host", *, lost=0, crashes=0, hangs=0, rest=0):
-    """Appends a line to the file that TANDEM_TRIED names, if it is set, for scripts/tried (tests/support/tried.h has
-    the same function). `count` units were tried; `lost` counts answers or records, `crashes` and `hangs` the
-    program, and `rest` ended in other people's libraries."""
+    """Appends a line to the file that TANDEM_TRIED names, if it is set, for scripts/tried
+    (tests/support/tried.h has the same function). `count` units were tried; `lost` counts answers or records,
+    `crashes` and `hangs` the program, and `rest` ended in other people's libraries."""
     if "TANDEM_TRIED" not in os.environ:
         return
-    commit = re.search(r"commit (\w+)", subprocess.run([str(PROGRAM), "--version"], capture_output=True, text=True, check=True).stdout)[1]
+    commit = re.search(
+        r"commit (\w+)",
+        subprocess.run([str(PROGRAM), "--version"], capture_output=True, text=True, check=True).stdout,
+    )[1]
     with open(os.environ["TANDEM_TRIED"], "a", encoding="utf-8") as out:
-        out.write(json.dumps({"what": what, "count": count, "unit": unit, "where": where, "lost": lost, "crashes": crashes, "hangs": hangs,
-                              "others": rest, "commit": commit}) + "\n")
+        out.write(
+            json.dumps(
+                {
+                    "what": what,
+                    "count": count,
+                    "unit": unit,
+                    "where": where,
+                    "lost": lost,
+                    "crashes": crashes,
+                    "hangs": hangs,
+                    "others": rest,
+                    "commit": commit,
+                }
+            )
+            + "\n"
+        )
 
 
 def bar(cells, offset):
-    """Vertices and tetrahedra of a row of cubes, six tetrahedra each; coordinates are exact in single precision."""
+    """Vertices and tetrahedra of a row of cubes, six tetrahedra each; coordinates are exact in single
+    precision."""
     points = [(i, j, k) for i in range(cells + 1) for j in range(2) for k in range(2)]
     number = {p: n for n, p in enumerate(points)}
     tets = []
@@ -85,7 +122,9 @@ def gmsh(path, points, tets, kind=4):
         out.write("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n%d\n" % len(points))
         out.writelines("%d %r %r %r\n" % (n, *p) for n, p in enumerate(points, 1))
         out.write("$EndNodes\n$Elements\n%d\n" % len(tets))
-        out.writelines("%d %d 2 0 0 %s\n" % (n, kind, " ".join(str(v + 1) for v in t)) for n, t in enumerate(tets, 1))
+        out.writelines(
+            "%d %d 2 0 0 %s\n" % (n, kind, " ".join(str(v + 1) for v in t)) for n, t in enumerate(tets, 1)
+        )
         out.write("$EndElements\n")
     return path
 

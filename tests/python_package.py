@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""python_package.py PROGRAM SOURCE: the Python package, from its wheel alone: it reads the values of tandem export
---csv from the committed records, and its comparisons equal tandem compare. Figures name the best cells,
-and bad files give one line."""
+"""python_package.py PROGRAM SOURCE: the Python package, from its wheel alone: it reads the values of tandem
+export --csv from the committed records, and its comparisons equal tandem compare. Figures name the best
+cells, and bad files give one line."""
+
 import csv
 import dataclasses
 import io
@@ -42,13 +43,20 @@ def setUpModule():
     tools = SOURCE / ".cache/python"
     assert tools.exists(), "scikit-build-core is missing; scripts/setup fetches it"
     code = "import sys; from scikit_build_core.build import build_wheel; build_wheel(sys.argv[1], {'wheel.cmake': 'false'})"
-    done = subprocess.run([sys.executable, "-c", code, FOLDER.name], cwd=copy, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(tools)})
+    done = subprocess.run(
+        [sys.executable, "-c", code, FOLDER.name],
+        cwd=copy,
+        capture_output=True,
+        text=True,
+        env={**os.environ, "PYTHONPATH": str(tools)},
+    )
     assert done.returncode == 0, done.stderr
-    wheel, = pathlib.Path(FOLDER.name).glob("*.whl")
+    (wheel,) = pathlib.Path(FOLDER.name).glob("*.whl")
     unpacked = pathlib.Path(FOLDER.name) / "unpacked"
     zipfile.ZipFile(wheel).extractall(unpacked)
     sys.path.insert(0, str(unpacked))
     import tandem
+
     assert pathlib.Path(tandem.__file__).is_relative_to(unpacked)
 
 
@@ -59,11 +67,11 @@ def tearDownModule():
 class Metadata(unittest.TestCase):
     def test_the_distribution_has_a_name_of_its_own(self):
         """PyPI has another distribution tandem."""
-        wheel, = pathlib.Path(FOLDER.name).glob("*.whl")
+        (wheel,) = pathlib.Path(FOLDER.name).glob("*.whl")
         self.assertTrue(wheel.name.startswith("tandem_bvh-"), wheel.name)
         names = zipfile.ZipFile(wheel).namelist()
         self.assertIn("tandem/__init__.py", names)
-        metadata, = (name for name in names if name.endswith("/METADATA"))
+        (metadata,) = (name for name in names if name.endswith("/METADATA"))
         self.assertIn("\nName: tandem-bvh\n", zipfile.ZipFile(wheel).read(metadata).decode())
 
 
@@ -79,7 +87,7 @@ class Reading(unittest.TestCase):
         for committed in sorted([*H200.glob("*.jsonl"), *(SOURCE / "results/cpu").glob("*.jsonl")]):
             path = pathlib.Path(FOLDER.name) / committed.name
             lines = committed.read_text().splitlines(keepends=True)
-            path.write_text("".join(lines if LONG else lines[::-(-len(lines) // 20)]))
+            path.write_text("".join(lines if LONG else lines[:: -(-len(lines) // 20)]))
             done = subprocess.run([PROGRAM, "export", path, "--csv"], capture_output=True, text=True)
             if done.returncode != 0:  # not records of cells
                 with self.assertRaises(tandem.RecordError, msg=path.name):
@@ -104,17 +112,28 @@ class Reading(unittest.TestCase):
         records = tandem.read(str(path))
         with open(path) as file:
             raw = [json.loads(line) for line in file]
-        cell = next(i for i, record in enumerate(raw) if record["algorithm"] == "gproximity" and record["preset"] == "fair")
+        cell = next(
+            i
+            for i, record in enumerate(raw)
+            if record["algorithm"] == "gproximity" and record["preset"] == "fair"
+        )
         record, frames = raw[cell], raw[cell]["frames"]["last"] - raw[cell]["frames"]["first"] + 1
         mine = records.of([cell])
         self.assertEqual(list(mine.cells.index), [cell])
-        self.assertEqual([round(ms * frames * 1e6) for ms in mine.samples["ms"]], record["total_ns"]["samples"])
+        self.assertEqual(
+            [round(ms * frames * 1e6) for ms in mine.samples["ms"]], record["total_ns"]["samples"]
+        )
         self.assertEqual(list(mine.samples["round"]), record["total_ns"]["rounds"])
         self.assertEqual(set(mine.stages["stage"]), set(record["stages"]))
         balance = mine.stages[mine.stages["stage"] == "balance"].iloc[0]
-        self.assertAlmostEqual(balance["device_ms"], record["stages"]["balance"]["device_ns"]["median"] / frames / 1e6)
+        self.assertAlmostEqual(
+            balance["device_ms"], record["stages"]["balance"]["device_ns"]["median"] / frames / 1e6
+        )
         self.assertEqual(balance["launches"], record["stages"]["balance"]["launches"])
-        self.assertEqual(set(mine.kernels["kernel"]), {kernel["entry"] for kernel in record["kernels"]} | set(record["kernel_times"]))
+        self.assertEqual(
+            set(mine.kernels["kernel"]),
+            {kernel["entry"] for kernel in record["kernels"]} | set(record["kernel_times"]),
+        )
         self.assertEqual(list(mine.frames["candidate_pairs"]), record["work"]["candidate_pairs"])
         self.assertEqual(len(records.cells), len(raw))
         self.assertGreater(records.frames["ms"].min(), 0)
@@ -122,16 +141,22 @@ class Reading(unittest.TestCase):
     def test_errors_equal_those_of_the_truth(self):
         records = tandem.read(H200 / "accuracy.jsonl")
         written = [json.loads(line) for line in (H200 / "accuracy.jsonl").read_text().splitlines()]
-        self.assertEqual(set(records.errors["cell"]), {i for i, r in enumerate(written) if r["error"]["truth"]})
+        self.assertEqual(
+            set(records.errors["cell"]), {i for i, r in enumerate(written) if r["error"]["truth"]}
+        )
         for row in records.errors.itertuples():
             truth = written[row.cell]["error"]["truth"]
             if row.error == "false_share":
                 self.assertAlmostEqual(row.median, truth["false"] / truth["candidates"])
             elif row.error == "missed_share":
                 missed = truth["missed_touching"] + truth["missed_overlapping"]
-                self.assertAlmostEqual(row.median, missed / (missed + truth["touching"] + truth["overlapping"]))
+                self.assertAlmostEqual(
+                    row.median, missed / (missed + truth["touching"] + truth["overlapping"])
+                )
             else:
-                self.assertEqual({"median": row.median, "p99": row.p99, "max": row.max}, truth["contacts"][row.error])
+                self.assertEqual(
+                    {"median": row.median, "p99": row.p99, "max": row.max}, truth["contacts"][row.error]
+                )
 
     def test_several_files_and_packed_ones(self):
         one, packed = H200 / "tiled.jsonl", H200 / "plates.jsonl"
@@ -150,12 +175,23 @@ class Reading(unittest.TestCase):
             record = json.loads(json.dumps(line | fields))
             total = record["total_ns"]
             kept = [i for i, of in enumerate(total["rounds"]) if of in rounds[:count]]
-            total["samples"], total["rounds"] = [total["samples"][i] * factor for i in kept], [total["rounds"][i] for i in kept]
-            record["session"], record["sampling"] = session, record["sampling"] | {"interrupted": count < len(rounds)}
+            total["samples"], total["rounds"] = (
+                [total["samples"][i] * factor for i in kept],
+                [total["rounds"][i] for i in kept],
+            )
+            record["session"], record["sampling"] = (
+                session,
+                record["sampling"] | {"interrupted": count < len(rounds)},
+            )
             return json.dumps(record) + "\n"
 
-        begun, whole, other = with_rounds(3, "a"), with_rounds(len(rounds), "b"), with_rounds(len(rounds), "c", 2)
+        begun, whole, other = (
+            with_rounds(3, "a"),
+            with_rounds(len(rounds), "b"),
+            with_rounds(len(rounds), "c", 2),
+        )
         with tempfile.TemporaryDirectory() as folder:
+
             def read(*texts):
                 files = []
                 for number, text in enumerate(texts):
@@ -167,13 +203,19 @@ class Reading(unittest.TestCase):
             self.assertEqual(read(begun), [("a", True)])
             self.assertEqual(read(begun, whole), [("b", False)])
             self.assertEqual(read(whole + begun + whole, whole, other), [("b", False), ("c", False)])
-            # measured again without the rounds of the interrupted cell; not by another program, nor if it failed
+            # measured again without the rounds of the interrupted cell; not by another program, nor if it
+            # failed
             self.assertEqual(read(with_rounds(5, "a", 2), whole), [("b", False)])
             self.assertEqual(read(whole, with_rounds(5, "a", 2)), [("b", False), ("a", True)])
             environment = line["environment"] | {"sources": "77"}
-            self.assertEqual(read(with_rounds(5, "a", 2), with_rounds(len(rounds), "b", environment=environment)), [("a", True), ("b", False)])
+            self.assertEqual(
+                read(with_rounds(5, "a", 2), with_rounds(len(rounds), "b", environment=environment)),
+                [("a", True), ("b", False)],
+            )
             gpus = [{**line["devices"][0], "id": f"cuda:{i}"} for i in range(2)]
-            self.assertEqual(len(read(with_rounds(9, "s", devices=gpus[:1]), with_rounds(9, "s", 2, devices=gpus[1:]))), 2)
+            self.assertEqual(
+                len(read(with_rounds(9, "s", devices=gpus[:1]), with_rounds(9, "s", 2, devices=gpus[1:]))), 2
+            )
             with self.assertRaises(tandem.RecordError) as caught:
                 read(whole, begun + with_rounds(len(rounds), "b", 2))
             self.assertIn("0.jsonl:1 and ", str(caught.exception))
@@ -182,9 +224,15 @@ class Reading(unittest.TestCase):
     def test_bad_files_are_one_line(self):
         good = (H200 / "seeds.jsonl").read_text().splitlines()[0]
         without = json.dumps({name: value for name, value in json.loads(good).items() if name != "frames"})
-        for text, words in ((f"{good}\nnot json\n", ":2: is not JSON"), ("[1]\n", ":1: is no record of a cell"), ("[" * 100000 + "\n", ":1: is not JSON"),
-                            (good.replace('"schema":4', '"schema":1', 1) + "\n", "scripts/convert_records"),
-                            (good.replace('"schema":4', '"schema":9', 1) + "\n", "schema 9"), (f"{without}\n", "record"), ("", "is empty")):
+        for text, words in (
+            (f"{good}\nnot json\n", ":2: is not JSON"),
+            ("[1]\n", ":1: is no record of a cell"),
+            ("[" * 100000 + "\n", ":1: is not JSON"),
+            (good.replace('"schema":4', '"schema":1', 1) + "\n", "scripts/convert_records"),
+            (good.replace('"schema":4', '"schema":9', 1) + "\n", "schema 9"),
+            (f"{without}\n", "record"),
+            ("", "is empty"),
+        ):
             with tempfile.NamedTemporaryFile("w", suffix=".jsonl") as file:
                 file.write(text)
                 file.flush()
@@ -211,7 +259,9 @@ class Reading(unittest.TestCase):
 
 class Comparing(unittest.TestCase):
     def expect_same(self, old, new):
-        done = subprocess.run([PROGRAM, "compare", old, new, "--format", "json"], capture_output=True, text=True)
+        done = subprocess.run(
+            [PROGRAM, "compare", old, new, "--format", "json"], capture_output=True, text=True
+        )
         expected = json.loads(done.stdout)
         mine = tandem.compare(old, new)
         self.assertEqual(mine.changed, expected["changed"])
@@ -225,7 +275,9 @@ class Comparing(unittest.TestCase):
                 if ratio is None:
                     self.assertTrue(math.isnan(row[name]), name)
                 else:
-                    self.assertAlmostEqual(row[name] / ratio if ratio else row[name] + 1, 1, delta=1e-9, msg=name)
+                    self.assertAlmostEqual(
+                        row[name] / ratio if ratio else row[name] + 1, 1, delta=1e-9, msg=name
+                    )
         return mine
 
     def changed(self, lines, change):
@@ -255,6 +307,7 @@ class Comparing(unittest.TestCase):
                 record["session"] = "another"
             if i == 6:
                 record["status"] = "failed"
+
         mine = self.expect_same(old, self.changed(lines, slower))
         self.assertLessEqual({"another_answer", "too_few", "slower"}, set(mine.cells["verdict"]))
         self.assertEqual(len(mine.only_old), 1)
@@ -270,7 +323,9 @@ class Comparing(unittest.TestCase):
                 total["samples"] = [100000 + step * ((j * (i + 3)) % 11) for j in range(count)]
                 total["rounds"] = list(range(count))
                 record["session"] = session
+
             return self.changed(lines, change)
+
         for count in (8, 30, 120):
             for session in ("one", "other"):
                 self.expect_same(of(count, 100, "one"), of(count, 130, session))
@@ -316,7 +371,12 @@ class Drawing(unittest.TestCase):
         cells["status"] = cells["status"].astype(str)
         cells.loc[first, "status"] = "wrong"
         records = dataclasses.replace(self.plates, cells=cells)
-        for draw in (tandem.plot_cells, tandem.plot_stages, tandem.plot_frames, lambda r: tandem.plot_sweep(r, "slabs")):
+        for draw in (
+            tandem.plot_cells,
+            tandem.plot_stages,
+            tandem.plot_frames,
+            lambda r: tandem.plot_sweep(r, "slabs"),
+        ):
             with self.assertWarnsRegex(UserWarning, "1 of .* cells failed, are wrong"):
                 draw(records)
         with warnings.catch_warnings(), self.assertRaisesRegex(ValueError, "nothing can be drawn"):
@@ -350,27 +410,44 @@ class Drawing(unittest.TestCase):
             spread = record["error"]["truth"]["contacts"]["hausdorff"]
             if spread is not None:
                 points[cell] = (record["total_ns"]["median"], spread["p99"])
-        named = [cell for cell, (ns, error) in points.items()
-                 if not any(a <= ns and b <= error and (a, b) != (ns, error) for a, b in points.values())]
+        named = [
+            cell
+            for cell, (ns, error) in points.items()
+            if not any(a <= ns and b <= error and (a, b) != (ns, error) for a, b in points.values())
+        ]
         self.assertTrue(0 < len(named) < len(points) > 4, points)
         axes = tandem.plot_errors(plates, "hausdorff", "p99")
         places = sorted(text.xy for text in axes.texts)
-        self.assertEqual([error for _, error in sorted((points[cell][1], points[cell][1]) for cell in named)], [x for x, _ in places])
+        self.assertEqual(
+            [error for _, error in sorted((points[cell][1], points[cell][1]) for cell in named)],
+            [x for x, _ in places],
+        )
         self.assertEqual(len(axes.lines), 2 * len(points))
-        self.assertRegex(" ".join(axes.get_title("left").split()), "has the least error and takes [0-9.]+ times as long as the fastest|is the fastest and has the least")
+        self.assertRegex(
+            " ".join(axes.get_title("left").split()),
+            "has the least error and takes [0-9.]+ times as long as the fastest|is the fastest and has the least",
+        )
 
     def test_zero_errors_are_drawn(self):
         errors = self.plates.cells.index[:3]
-        table = pandas.DataFrame({"cell": errors, "error": "false_share", "median": [0.0, 0.5, 0.25], "p99": None, "max": None})
+        table = pandas.DataFrame(
+            {"cell": errors, "error": "false_share", "median": [0.0, 0.5, 0.25], "p99": None, "max": None}
+        )
         axes = tandem.plot_errors(dataclasses.replace(self.plates, errors=table), "false_share")
         self.assertAlmostEqual(min(line.get_xdata()[0] for line in axes.lines), 0.025)
-        with self.assertRaisesRegex(ValueError, "no such error in these records; there are none: measure with --truth"):
+        with self.assertRaisesRegex(
+            ValueError, "no such error in these records; there are none: measure with --truth"
+        ):
             tandem.plot_errors(self.plates)
-        with self.assertRaisesRegex(ValueError, "volume: no such error in these records; there are false_share"):
+        with self.assertRaisesRegex(
+            ValueError, "volume: no such error in these records; there are false_share"
+        ):
             tandem.plot_errors(dataclasses.replace(self.plates, errors=table), "volume")
 
     def test_records_that_cannot_be_drawn(self):
-        with self.assertRaisesRegex(ValueError, "no such setting in these records; there are .*seed_threshold"):
+        with self.assertRaisesRegex(
+            ValueError, "no such setting in these records; there are .*seed_threshold"
+        ):
             tandem.plot_sweep(self.plates, "seed_treshold")
         with self.assertRaisesRegex(ValueError, "combinations of scene, frames and device"):
             tandem.plot_cells(self.all)

@@ -1,7 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""python_report.py PROGRAM SOURCE: content of a page about records, from the package python/tandem/report alone:
-interrupted cells, damaged records, missing libraries, escaping of all text, and the export of its scene."""
+"""python_report.py PROGRAM SOURCE: content of a page about records, from the package python/tandem/report
+alone: interrupted cells, damaged records, missing libraries, escaping of all text, and the export of its
+scene."""
+
 import copy
 import json
 import lzma
@@ -64,7 +66,10 @@ class Reading(Case):
         files = [self.file(begun, name="begun.jsonl"), self.file(whole, name="whole.jsonl.xz")]
         read = read_records(files)
         self.assertEqual(self.shown(read), [("b", False)])
-        self.assertEqual([(file["name"], file["cells"]) for file in read.files], [("begun.jsonl", 1), ("whole.jsonl.xz", 1)])
+        self.assertEqual(
+            [(file["name"], file["cells"]) for file in read.files],
+            [("begun.jsonl", 1), ("whole.jsonl.xz", 1)],
+        )
         self.assertEqual(read.cells[0].row[list(FIELDS).index("file")], 1)
 
     def test_other_times_are_another_record(self):
@@ -72,13 +77,20 @@ class Reading(Case):
         self.assertEqual((self.shown(read), read.cell_records), ([("a", True), ("b", False)], 2))
 
     def test_a_copy_is_shown_once(self):
-        self.assertEqual(self.shown(self.read(self.of_rounds(9, "a"), self.of_rounds(9, "a"))), [("a", False)])
+        self.assertEqual(
+            self.shown(self.read(self.of_rounds(9, "a"), self.of_rounds(9, "a"))), [("a", False)]
+        )
 
     def test_the_last_ok_record_represents_its_key(self):
         failed = self.changed(session="f", status="failed", failure="lost", total_ns=None)
         good, again = self.of_rounds(5, "a"), self.of_rounds(5, "b", 2)
-        for records, older in (((good, again), [True, False]), ((good, failed), [False, True]), ((failed, good), [True, False]),
-                               ((failed, {**failed, "session": "g"}), [True, False]), ((good, failed, again), [True, True, False])):
+        for records, older in (
+            ((good, again), [True, False]),
+            ((good, failed), [False, True]),
+            ((failed, good), [True, False]),
+            ((failed, {**failed, "session": "g"}), [True, False]),
+            ((good, failed, again), [True, True, False]),
+        ):
             self.assertEqual([cell.is_older for cell in self.read(*records).cells], older)
 
     def test_of_too_many_records_one_per_key_is_kept(self):
@@ -88,33 +100,60 @@ class Reading(Case):
         self.assertEqual(read.notes, ["4 older records of cells that were recorded again are left out"])
         read = self.read(*keys, self.of_rounds(5, "w", status="wrong", key="another"), max_cells=3)
         self.assertEqual(len(read.cells), 3)
-        self.assertRegex(read.notes[-1], "^[0-9]+ of 9 records of cells are left out, 1 of them failed or wrong: a page shows at most 3; ")
+        self.assertRegex(
+            read.notes[-1],
+            "^[0-9]+ of 9 records of cells are left out, 1 of them failed or wrong: a page shows at most 3; ",
+        )
 
     def test_a_torn_line_is_ignored_and_reported(self):
         read = read_records([self.file(self.record, self.record, end="")])
         self.assertEqual(len(read.cells), 1)
-        self.assertRegex(read.notes[0], r"some\.jsonl:2: the last line has no end and is ignored; it is cut off or still being written$")
+        self.assertRegex(
+            read.notes[0],
+            r"some\.jsonl:2: the last line has no end and is ignored; it is cut off or still being written$",
+        )
         with self.assertRaisesRegex(lines.RecordError, "its only line has no end; name a file of records"):
             read_records([self.file(self.record, end="")])
 
     def test_numbers_that_json_lacks(self):
-        for text in ('{"key": NaN}', '{"key": -Infinity}', '{"key": 1e999}', '{"key": 1' + "0" * 5000 + "}", "[" * 100_000, "\\"):
+        for text in (
+            '{"key": NaN}',
+            '{"key": -Infinity}',
+            '{"key": 1e999}',
+            '{"key": 1' + "0" * 5000 + "}",
+            "[" * 100_000,
+            "\\",
+        ):
             path = self.work / "numbers.jsonl"
             path.write_text(text + "\n")
-            with self.assertRaisesRegex(lines.RecordError, "numbers.jsonl:1: is not JSON; give files that 'tandem run --out'"):
+            with self.assertRaisesRegex(
+                lines.RecordError, "numbers.jsonl:1: is not JSON; give files that 'tandem run --out'"
+            ):
                 read_records([str(path)])
 
     def test_damaged_records_are_one_line(self):
-        """Each part of records of every kind is removed or replaced: they are shown, or one line names the position."""
+        """Each part of records of every kind is removed or replaced: they are shown, or one line names the
+        position."""
         chance = random.Random(20180606)
-        sources = [H200 / name for name in ("plan.jsonl", "accuracy.jsonl", "profile.jsonl", "ceilings.jsonl", "simulation-funnel.jsonl")]
+        sources = [
+            H200 / name
+            for name in (
+                "plan.jsonl",
+                "accuracy.jsonl",
+                "profile.jsonl",
+                "ceilings.jsonl",
+                "simulation-funnel.jsonl",
+            )
+        ]
         shown = refused = 0
         for source in sources:
             record = self.short(json.loads(source.read_text().splitlines()[-1]))
             for damaged in self.damaged(record, chance):
                 path = self.file(damaged)
                 try:
-                    json.loads(data_of(read_records([path]), 1_000_000, "", "").json, parse_constant=self.fail)
+                    json.loads(
+                        data_of(read_records([path]), 1_000_000, "", "").json, parse_constant=self.fail
+                    )
                     shown += 1
                 except lines.RecordError as error:
                     self.assertTrue(str(error).startswith(f"{path}:1: "), error)
@@ -125,7 +164,11 @@ class Reading(Case):
     def short(self, value):
         """With lists of two elements, which suffice for the test."""
         if isinstance(value, dict):
-            return {name: self.short(part) for name, part in value.items() if name not in ("breakdown_ns", "chosen")}
+            return {
+                name: self.short(part)
+                for name, part in value.items()
+                if name not in ("breakdown_ns", "chosen")
+            }
         return list(map(self.short, value[:2])) if isinstance(value, list) else value
 
     def damaged(self, record, chance):
@@ -136,8 +179,26 @@ class Reading(Case):
                     yield from places(part, (*path, name))
             elif isinstance(value, list) and value:
                 yield from places(value[0], (*path, 0))
+
         for path in list(places(record))[1:]:
-            for replacement in chance.sample([None, True, "text", "\ud800", -1, 1.5, 10**400, [], [None], [[1]], {}, {"median": "x"}, "left out"], 3 if LONG else 1):
+            for replacement in chance.sample(
+                [
+                    None,
+                    True,
+                    "text",
+                    "\ud800",
+                    -1,
+                    1.5,
+                    10**400,
+                    [],
+                    [None],
+                    [[1]],
+                    {},
+                    {"median": "x"},
+                    "left out",
+                ],
+                3 if LONG else 1,
+            ):
                 damaged = copy.deepcopy(record)
                 part = damaged
                 for name in path[:-1]:
@@ -149,15 +210,23 @@ class Reading(Case):
                 yield damaged
 
     def test_simulations_are_bounded(self):
-        line = {"kind": "step", "session": "s", "host_ns": dict.fromkeys(("broad", "narrow", "reduce", "assemble", "solve", "move"), 1e6),
-                "contacts_found": 2, "contacts_kept": 1}
+        line = {
+            "kind": "step",
+            "session": "s",
+            "host_ns": dict.fromkeys(("broad", "narrow", "reduce", "assemble", "solve", "move"), 1e6),
+            "contacts_found": 2,
+            "contacts_kept": 1,
+        }
         simulations = Simulations()
         for step in range(5000):
             simulations.add({**line, "step": step}, "x.jsonl")
         for session in range(50):
             simulations.add({**line, "step": 0, "session": str(session)}, "x.jsonl")
         shown = simulations.shown()
-        self.assertEqual((len(shown), simulations.left_out, shown[0]["steps"], shown[0]["status"]), (40, 11, 5000, "not ended"))
+        self.assertEqual(
+            (len(shown), simulations.left_out, shown[0]["steps"], shown[0]["status"]),
+            (40, 11, 5000, "not ended"),
+        )
         steps = [kept[0] for kept in shown[0]["kept"]]
         self.assertEqual(steps, list(range(0, 5000, steps[1])))
         self.assertTrue(250 < len(steps) <= 600, len(steps))
@@ -182,7 +251,10 @@ class Pages(Case):
         names = {**libraries.CHARTS, **libraries.SCENES}
         with unittest.mock.patch.dict(os.environ, TANDEM_JAVASCRIPT=str(self.work / "javascript")):
             for name, package in names.items():
-                with self.assertRaisesRegex(BadUse, f"{os.path.basename(name)}, and there is no .*javascript/{name}; install {package} "):
+                with self.assertRaisesRegex(
+                    BadUse,
+                    f"{os.path.basename(name)}, and there is no .*javascript/{name}; install {package} ",
+                ):
                     libraries.scripts(names, PROGRAM, "tandem view")
                 path = self.work / "javascript" / name
                 path.parent.mkdir(parents=True, exist_ok=True)
@@ -199,8 +271,22 @@ class Pages(Case):
     def test_missing_libraries_end_both_commands(self):
         nowhere = {"TANDEM_JAVASCRIPT": str(self.work / "nowhere")}
         page = self.work / "x.html"
-        self.bad(["tandem report needs chart.min.js", "libjs-chart.js"], "report", H200 / "plan.jsonl", "-o", page, environment=nowhere)
-        self.bad(["tandem view needs three.min.js", "libjs-three"], "view", "plates", "-o", page, environment=nowhere)
+        self.bad(
+            ["tandem report needs chart.min.js", "libjs-chart.js"],
+            "report",
+            H200 / "plan.jsonl",
+            "-o",
+            page,
+            environment=nowhere,
+        )
+        self.bad(
+            ["tandem view needs three.min.js", "libjs-three"],
+            "view",
+            "plates",
+            "-o",
+            page,
+            environment=nowhere,
+        )
         self.assertFalse(page.exists())
 
     def test_files_are_complete_or_unchanged(self):
@@ -225,43 +311,82 @@ class Commands(Case):
         out = ("-o", self.work / "none.html")
         self.bad("the nearest is 'plates'", "view", "plats", *out)
         self.bad("no scene; name one", "view", *out)
-        self.bad("frames 3:900", "report", H200 / "ceilings.jsonl", "--scene", "plates", "--frames", "3:900", *out)
-        self.bad("--device all: contacts need one device", "view", "plates", "--contacts", "--device", "all", *out)
-        self.bad("more --pose than --mesh", "view", "--mesh", self.good, "--pose", "1 0 0 1 0 0 0", "--pose", "0 0 0 1 0 0 0", *out)
+        self.bad(
+            "frames 3:900", "report", H200 / "ceilings.jsonl", "--scene", "plates", "--frames", "3:900", *out
+        )
+        self.bad(
+            "--device all: contacts need one device", "view", "plates", "--contacts", "--device", "all", *out
+        )
+        self.bad(
+            "more --pose than --mesh",
+            "view",
+            "--mesh",
+            self.good,
+            "--pose",
+            "1 0 0 1 0 0 0",
+            "--pose",
+            "0 0 0 1 0 0 0",
+            *out,
+        )
         self.bad("--every", "view", "plates", "--every", 0, *out)
         self.bad("--frames requires --scene", "report", H200 / "ceilings.jsonl", "--frames", 0, *out)
         self.assertFalse((self.work / "none.html").exists())
 
     def test_sentences_of_the_page(self):
         """What the page says of each group and of all together, before the line that names the page."""
-        page, data = self.work / "words.html", json.loads(data_of(read_records([H200 / "plan.jsonl"]), 7_000_000, "", "").json)
+        page, data = (
+            self.work / "words.html",
+            json.loads(data_of(read_records([H200 / "plan.jsonl"]), 7_000_000, "", "").json),
+        )
         status, out, errors = tandem("report", H200 / "plan.jsonl", "-o", page, "--sentences")
         self.assertEqual((status, errors), (0, []))
         self.assertGreater(len(data["groups"]), 3)
-        self.assertEqual(out.splitlines()[:-1], [f"{group['title']}: {group['words']}" for group in data["groups"]] + data["words"])
+        self.assertEqual(
+            out.splitlines()[:-1],
+            [f"{group['title']}: {group['words']}" for group in data["groups"]] + data["words"],
+        )
         self.assertTrue(out.splitlines()[-1].startswith(f"{page}: "))
         self.assertIn("of the difference from", out)
 
     def test_numpy_is_enough_for_a_report(self):
         """scripts/setup installs no other package of Python for scripts/run."""
-        text = ("import importlib.util, sys\nfind = importlib.util.find_spec\nwithout = ('pandas', 'scipy', 'matplotlib')\n"
-                "sys.modules.update(dict.fromkeys(without))\nimportlib.util.find_spec = lambda name: None if name in without else find(name)\n"
-                f"sys.path.insert(0, {str(SOURCE / 'python')!r})\nfrom tandem.commands import report\nsys.exit(report.main(sys.argv[2:], sys.argv[1]))")
+        text = (
+            "import importlib.util, sys\nfind = importlib.util.find_spec\nwithout = ('pandas', 'scipy', 'matplotlib')\n"
+            "sys.modules.update(dict.fromkeys(without))\nimportlib.util.find_spec = lambda name: None if name in without else find(name)\n"
+            f"sys.path.insert(0, {str(SOURCE / 'python')!r})\nfrom tandem.commands import report\nsys.exit(report.main(sys.argv[2:], sys.argv[1]))"
+        )
         page = self.work / "numpy.html"
-        done = subprocess.run(["/usr/bin/python3", "-c", text, PROGRAM, H200 / "plates.jsonl", "--output", page, "--sentences"], capture_output=True, text=True)
+        done = subprocess.run(
+            ["/usr/bin/python3", "-c", text, PROGRAM, H200 / "plates.jsonl", "--output", page, "--sentences"],
+            capture_output=True,
+            text=True,
+        )
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertIn("numpy.html: ", done.stdout)
 
     def test_options_reach_the_export(self):
         page = self.work / "meshes.html"
-        status, out, errors = tandem("view", "--mesh", self.good, "--mesh", self.good, "--pose", "-1 0 0 1 0 0 0", "--contacts", "-o", page)
+        status, out, errors = tandem(
+            "view",
+            "--mesh",
+            self.good,
+            "--mesh",
+            self.good,
+            "--pose",
+            "-1 0 0 1 0 0 0",
+            "--contacts",
+            "-o",
+            page,
+        )
         self.assertEqual((status, errors), (0, []))
         self.assertRegex(out, r"^.*meshes\.html: 1 frame of .*, 0\.9 MB\n$")
         scene = json.loads(page.read_text().split('id="data-scene">')[1].split("</script>")[0])
         self.assertEqual((scene["bodies"], scene["frames"], len(scene["contacts"])), (2, [0], 1))
         status, out, _ = tandem("view", "plates", "--frames", "2:9", "--every", 3, "-o", page)
         self.assertRegex(out, r": 3 frames of plates")
-        done = subprocess.run([PROGRAM, "view", "plates", "--frames", "0"], cwd=self.work, capture_output=True, text=True)
+        done = subprocess.run(
+            [PROGRAM, "view", "plates", "--frames", "0"], cwd=self.work, capture_output=True, text=True
+        )
         self.assertEqual((done.returncode, done.stderr, (self.work / "plates.html").exists()), (0, "", True))
 
     def end_group(self, group):
@@ -275,8 +400,13 @@ class Commands(Case):
         folder = self.work / "temporary"
         folder.mkdir()
         minutes = ("pile:bodies=2000,frames=300", "--contacts")
-        process = subprocess.Popen([PROGRAM, "view", *minutes, "-o", self.work / "ended.html"], stderr=subprocess.PIPE, text=True,
-                                   env={**os.environ, "TMPDIR": str(folder)}, start_new_session=True)
+        process = subprocess.Popen(
+            [PROGRAM, "view", *minutes, "-o", self.work / "ended.html"],
+            stderr=subprocess.PIPE,
+            text=True,
+            env={**os.environ, "TMPDIR": str(folder)},
+            start_new_session=True,
+        )
         self.addCleanup(self.end_group, process.pid)
         while not any(folder.iterdir()) and process.poll() is None:
             pass
@@ -289,16 +419,27 @@ class Commands(Case):
     def test_a_signal_before_the_export_starts(self):
         for number in (signal.SIGTERM, signal.SIGINT):
             late, made = [], []
-            self.addCleanup(signal.signal, number, signal.signal(number, lambda *_, late=late: late.append("a handler of the test")))
+            self.addCleanup(
+                signal.signal,
+                number,
+                signal.signal(number, lambda *_, late=late: late.append("a handler of the test")),
+            )
 
             def signalled(made=made, number=number, **options):
                 made.append(tempfile.TemporaryDirectory(**options))
                 os.kill(os.getpid(), number)
                 return made[-1]
 
-            with unittest.mock.patch.object(files, "tempfile", unittest.mock.Mock(TemporaryDirectory=signalled)), self.assertRaises(scene.ExportEnded) as ended:
+            with (
+                unittest.mock.patch.object(
+                    files, "tempfile", unittest.mock.Mock(TemporaryDirectory=signalled)
+                ),
+                self.assertRaises(scene.ExportEnded) as ended,
+            ):
                 scene.shown_scene(PROGRAM, ["plates", "--frames=0"])
-            self.assertEqual((ended.exception.code, late, pathlib.Path(made[0].name).exists()), (128 + number, [], False))
+            self.assertEqual(
+                (ended.exception.code, late, pathlib.Path(made[0].name).exists()), (128 + number, [], False)
+            )
 
 
 if __name__ == "__main__":

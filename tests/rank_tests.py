@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""rank_tests.py PROGRAM SOURCE: p-values against published tables and all arrangements of ranks; ratios computed by
-hand and against known properties of synthetic noise."""
+"""rank_tests.py PROGRAM SOURCE: p-values against published tables and all arrangements of ranks; ratios
+computed by hand and against known properties of synthetic noise."""
+
 import itertools
 import math
 import statistics
@@ -73,14 +74,30 @@ class SignedRanks(unittest.TestCase):
         p, exact = rank_tests.signed_ranks([rank if rank > 20 else -rank for rank in range(1, 61)])
         self.assertAlmostEqual(p, math.erfc(704.5 / math.sqrt(2 * 18452.5)), delta=1e-15)
         self.assertFalse(exact)
-        # 60 pairs that all tie, 40 of them positive: W = 40 * 30.5 = 1220; the variance is smaller by (60^3 - 60) / 48.
-        self.assertAlmostEqual(rank_tests.signed_ranks([-1] * 20 + [1] * 40)[0], math.erfc(304.5 / math.sqrt(2 * 13953.75)), delta=1e-15)
+        # 60 pairs that all tie, 40 of them positive: W = 40 * 30.5 = 1220; the variance is smaller by (60^3 -
+        # 60) / 48.
+        self.assertAlmostEqual(
+            rank_tests.signed_ranks([-1] * 20 + [1] * 40)[0],
+            math.erfc(304.5 / math.sqrt(2 * 13953.75)),
+            delta=1e-15,
+        )
 
 
 class RankSums(unittest.TestCase):
     def test_critical_values_of_tables(self):
         """Two-sided critical values of U at 5 % (Mann and Whitney 1947)."""
-        for side, other, u in ((4, 4, 0), (4, 6, 2), (5, 5, 2), (5, 8, 6), (8, 8, 13), (10, 10, 23), (10, 15, 39), (3, 5, 0), (15, 15, 64), (20, 20, 127)):
+        for side, other, u in (
+            (4, 4, 0),
+            (4, 6, 2),
+            (5, 5, 2),
+            (5, 8, 6),
+            (8, 8, 13),
+            (10, 10, 23),
+            (10, 15, 39),
+            (3, 5, 0),
+            (15, 15, 64),
+            (20, 20, 127),
+        ):
             self.assertLessEqual(sums_p(side, other, u), 0.05, (side, other))
             self.assertGreater(sums_p(side, other, u + 1), 0.05, (side, other))
             self.assertAlmostEqual(sums_p(side, other, u), sums_p(side, other, side * other - u), places=14)
@@ -129,7 +146,9 @@ class BothTests(unittest.TestCase):
                 self.assertAlmostEqual(rank_tests.least_rank_sum_p(n, m), sums_p(n, m, 0), delta=1e-12)
 
     def test_holm(self):
-        numpy.testing.assert_allclose(rank_tests.holm([0.01, 0.04, 0.03, 0.005]), [0.03, 0.06, 0.06, 0.02], rtol=1e-15)
+        numpy.testing.assert_allclose(
+            rank_tests.holm([0.01, 0.04, 0.03, 0.005]), [0.03, 0.06, 0.06, 0.02], rtol=1e-15
+        )
         self.assertEqual(list(rank_tests.holm([0.6, 0.7])), [1, 1])
         self.assertEqual(list(rank_tests.holm([0.2])), [0.2])
         self.assertEqual(len(rank_tests.holm([])), 0)
@@ -140,13 +159,17 @@ class Tails(unittest.TestCase):
         """The tail's number is the largest whose p is at most twice the probability."""
         for pairs in (1, 5, 6, 10, 25, 50, 60):
             at, below = rank_tests.signed_rank_tail(pairs, 0.025)
-            self.assertAlmostEqual(2 * below, signed_p(pairs, at), delta=1e-12 if pairs <= 50 else 2e-3, msg=pairs)
+            self.assertAlmostEqual(
+                2 * below, signed_p(pairs, at), delta=1e-12 if pairs <= 50 else 2e-3, msg=pairs
+            )
             self.assertEqual(2 * below <= 0.05, pairs >= 6)
             self.assertGreater(signed_p(pairs, at + 1), 0.05)
         for side, other in ((1, 1), (3, 3), (4, 4), (10, 10), (30, 10), (45, 60)):
             at, below = rank_tests.rank_sum_tail(side, other, 0.025)
             exact = side * (side + other) <= rank_tests.MAX_SUMS
-            self.assertAlmostEqual(2 * below, sums_p(side, other, at), delta=1e-12 if exact else 2e-3, msg=(side, other))
+            self.assertAlmostEqual(
+                2 * below, sums_p(side, other, at), delta=1e-12 if exact else 2e-3, msg=(side, other)
+            )
             self.assertGreater(sums_p(side, other, at + 1), 0.05)
 
 
@@ -164,7 +187,9 @@ class RankRatios(unittest.TestCase):
         at, probability = outside
         self.assertAlmostEqual(math.log(ratio.value), statistics.median(estimates), delta=1e-13)
         if probability > 0.025:
-            self.assertEqual((ratio.low, ratio.high, ratio.log_error), (None, None, None), "no ratio is rejected")
+            self.assertEqual(
+                (ratio.low, ratio.high, ratio.log_error), (None, None, None), "no ratio is rejected"
+            )
             return
         for value, expected in ((ratio.low, estimates[at]), (ratio.high, estimates[-1 - at])):
             self.assertAlmostEqual(math.log(value), expected, delta=1e-13)
@@ -174,17 +199,33 @@ class RankRatios(unittest.TestCase):
         for size in (1, 2, 5, 6, 10, 25, 60):
             logs = random.normal(0.05, 0.03, size)
             outside = rank_tests.signed_rank_tail(size, 0.025)
-            self.check(rank_ratios.paired_ratio(numpy.full(size, 1e6), 1e6 * numpy.exp(logs)), all_means(list(logs)), outside)
+            self.check(
+                rank_ratios.paired_ratio(numpy.full(size, 1e6), 1e6 * numpy.exp(logs)),
+                all_means(list(logs)),
+                outside,
+            )
         for size, other in ((1, 1), (12, 1), (1, 4), (3, 3), (4, 4), (5, 9), (12, 10), (40, 70)):
             before, after = random.normal(10, 0.03, size), random.normal(10.1, 0.03, other)
             outside = rank_tests.rank_sum_tail(size, other, 0.025)
-            self.check(rank_ratios.unpaired_ratio(numpy.exp(before), numpy.exp(after)), all_differences(before, after), outside)
+            self.check(
+                rank_ratios.unpaired_ratio(numpy.exp(before), numpy.exp(after)),
+                all_differences(before, after),
+                outside,
+            )
 
     def test_intervals_have_the_ratios_that_are_not_rejected(self):
         random = numpy.random.default_rng(7)
         before, after = numpy.exp(random.normal(0, 0.03, (2, 12)))
-        for ratio, p in ((rank_ratios.paired_ratio(before, after), lambda by: rank_tests.signed_ranks(numpy.log(after / before / by))[0]),
-                         (rank_ratios.unpaired_ratio(before, after), lambda by: rank_tests.rank_sums(before * by, after)[0])):
+        for ratio, p in (
+            (
+                rank_ratios.paired_ratio(before, after),
+                lambda by: rank_tests.signed_ranks(numpy.log(after / before / by))[0],
+            ),
+            (
+                rank_ratios.unpaired_ratio(before, after),
+                lambda by: rank_tests.rank_sums(before * by, after)[0],
+            ),
+        ):
             for inside in (ratio.low * (1 + 1e-9), ratio.value, ratio.high * (1 - 1e-9)):
                 self.assertGreater(p(inside), 0.05)
             for outside in (ratio.low * (1 - 1e-9), ratio.high * (1 + 1e-9)):
@@ -206,7 +247,9 @@ class RankRatios(unittest.TestCase):
         self.assertLess(error, 0.88 * medians.std())
         self.assertAlmostEqual(statistics.fmean(ratio.log_error for ratio in found) / error, 1, delta=0.1)
         # The exact level of twelve pairs is 4.25 %; three standard errors are 1.6 %.
-        self.assertAlmostEqual(sum(ratio.low <= 1 <= ratio.high for ratio in found) / len(found), 0.9575, delta=0.016)
+        self.assertAlmostEqual(
+            sum(ratio.low <= 1 <= ratio.high for ratio in found) / len(found), 0.9575, delta=0.016
+        )
 
 
 class Ratios(unittest.TestCase):
@@ -220,7 +263,11 @@ class Ratios(unittest.TestCase):
         """tests/unit/sampling_ratio.cpp has the same numbers for the program's table."""
         logs = [0.01 * (i * 7 % 11) - 0.03 for i in range(12)]
         ratio = resampling.paired_ratio([1] * 12, numpy.exp(logs))
-        for value, expected in ((ratio.value, 1.015113064615719), (ratio.low, 0.9801986733067553), (ratio.high, 1.0512710963760241)):
+        for value, expected in (
+            (ratio.value, 1.015113064615719),
+            (ratio.low, 0.9801986733067553),
+            (ratio.high, 1.0512710963760241),
+        ):
             self.assertAlmostEqual(value, expected, delta=1e-14)
 
     def test_the_generator_is_the_standard_one(self):
@@ -251,6 +298,7 @@ class Ratios(unittest.TestCase):
                 found = ratio(before, 1.1 * after)
                 held += found.low <= 1.1 <= found.high
             return held / 1000
+
         for rounds in (10, 25):
             self.assertTrue(0.94 < coverage(resampling.unpaired_ratio, rounds) < 0.995, rounds)
             self.assertTrue(0.94 < coverage(resampling.paired_ratio, rounds) < 0.99, rounds)
@@ -262,22 +310,32 @@ class Ratios(unittest.TestCase):
             for record, place in lines.each(SOURCE / "results" / name):
                 if record["total_ns"]:
                     medians = [statistics.median(own) for own in lines.samples_by_round(record).values()]
-                    self.assertEqual(resampling.median_interval(medians), (record["total_ns"]["low"], record["total_ns"]["high"]), place)
+                    self.assertEqual(
+                        resampling.median_interval(medians),
+                        (record["total_ns"]["low"], record["total_ns"]["high"]),
+                        place,
+                    )
                     found += 1
         self.assertGreater(found, 100)
         self.assertEqual(resampling.median_interval([7]), (7, 7))
         for values in (3, 10, 25):
-            tail = scipy.stats.norm.sf(math.sqrt(values / (values - 1)) * scipy.stats.t.ppf(0.975, values - 1))
+            tail = scipy.stats.norm.sf(
+                math.sqrt(values / (values - 1)) * scipy.stats.t.ppf(0.975, values - 1)
+            )
             self.assertAlmostEqual(resampling.interval_tail(values) / tail, 1, delta=1e-7)
 
     def test_the_error_is_the_deviation_of_the_estimate(self):
         random = numpy.random.default_rng(5)
         ratios = [resampling.unpaired_ratio(*numpy.exp(random.normal(0, 0.03, (2, 15)))) for _ in range(400)]
-        deviation = math.sqrt(statistics.fmean(math.log(ratio.value)**2 for ratio in ratios))
-        self.assertAlmostEqual(statistics.fmean(ratio.log_error for ratio in ratios) / deviation, 1, delta=0.2)
+        deviation = math.sqrt(statistics.fmean(math.log(ratio.value) ** 2 for ratio in ratios))
+        self.assertAlmostEqual(
+            statistics.fmean(ratio.log_error for ratio in ratios) / deviation, 1, delta=0.2
+        )
 
     def test_least_effect_is_that_of_normal_tests(self):
-        self.assertAlmostEqual(matching.least_effect(0.01, 0.05, 0.8), math.expm1(0.02801585218112968), delta=1e-12)
+        self.assertAlmostEqual(
+            matching.least_effect(0.01, 0.05, 0.8), math.expm1(0.02801585218112968), delta=1e-12
+        )
         self.assertEqual(matching.least_effect(0, 0.05, 0.8), 0)
 
 

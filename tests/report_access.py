@@ -1,7 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""report_access.py PROGRAM SOURCE: axe-core finds nothing serious or moderate on pages of `tandem report`: at 1,400 pixels light and 390 pixels dark, in the
-long form light and dark at both, with all parts open. Skipped if scripts/setup could not fetch axe-core (tests/page-requirements.txt)."""
+"""report_access.py PROGRAM SOURCE: axe-core finds nothing serious or moderate on pages of `tandem report`: at
+1,400 pixels light and 390 pixels dark, in the long form light and dark at both, with all parts open. Skipped
+if scripts/setup could not fetch axe-core (tests/page-requirements.txt)."""
+
 import json
 import sys
 import unittest
@@ -11,8 +13,10 @@ from report_case import RECORDS, ReportCase
 
 AXE = SOURCE / ".cache/pages/axe_playwright_python/axe.min.js"
 OPEN = "document.querySelectorAll('details').forEach(one => one.open = true); document.querySelector('#cell-table tbody button').click(); "
-FINDINGS = "axe.run(document, {resultTypes: ['violations']}).then(result => ({passes: result.passes.length, found: result.violations" \
+FINDINGS = (
+    "axe.run(document, {resultTypes: ['violations']}).then(result => ({passes: result.passes.length, found: result.violations"
     ".filter(one => one.impact !== 'minor').map(one => `${one.impact} ${one.id}: ${one.nodes[0].html.slice(0, 200)}`)}))"
+)
 
 
 @unittest.skipUnless(AXE.is_file(), "no .cache/pages; scripts/setup fetches axe-core, with a network")
@@ -29,9 +33,18 @@ class Access(ReportCase):
                 self.assertGreater(result["passes"], 10)
 
     def test_a_page_with_all_parts(self):
-        other = self.plan[0] | {"session": "0" * 16, "environment": self.plan[0]["environment"] | {"commit": "0" * 40}}
+        other = self.plan[0] | {
+            "session": "0" * 16,
+            "environment": self.plan[0]["environment"] | {"commit": "0" * 40},
+        }
         files = [self.write("plan.jsonl", [*self.plan[:12], other])]
-        for name, count in (("accuracy", 8), ("profile", 1), ("ceilings", 9), ("simulation-funnel", 40), ("thresholds", 9)):
+        for name, count in (
+            ("accuracy", 8),
+            ("profile", 1),
+            ("ceilings", 9),
+            ("simulation-funnel", 40),
+            ("thresholds", 9),
+        ):
             lines = (RECORDS / f"{name}.jsonl").read_text().splitlines()[:count]
             files.append(self.write(f"{name}.jsonl", map(json.loads, lines)))
         self.check(self.report(*files, "--scene", "plates", "--frames", "20:22", "--contacts"))
@@ -39,8 +52,18 @@ class Access(ReportCase):
     def test_a_page_with_a_comparison(self):
         old = self.write("old.jsonl", self.plan[:12])
         failed = json.loads(json.dumps(self.plan[12]))
-        failed.update(status="failed", failure="no memory", total_ns={"samples": [], "rounds": [], "frames": []})
-        self.check(self.report(self.write("new.jsonl", [*({**record, "session": "0" * 16} for record in self.plan[:12]), failed]), "--against", old))
+        failed.update(
+            status="failed", failure="no memory", total_ns={"samples": [], "rounds": [], "frames": []}
+        )
+        self.check(
+            self.report(
+                self.write(
+                    "new.jsonl", [*({**record, "session": "0" * 16} for record in self.plan[:12]), failed]
+                ),
+                "--against",
+                old,
+            )
+        )
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """A test case whose pages of `tandem report` are opened in Chromium."""
+
 import json
 
 from browser import Browser
@@ -11,7 +12,11 @@ RECORDS = SOURCE / "results/h200"
 def short(record):
     """The record with few samples, as most have."""
     if isinstance(record, dict):
-        return {name: short(value) for name, value in record.items() if name not in ("kernels", "chosen", "kernel_times")}
+        return {
+            name: short(value)
+            for name, value in record.items()
+            if name not in ("kernels", "chosen", "kernel_times")
+        }
     return [short(value) for value in record[:10]] if isinstance(record, list) else record
 
 

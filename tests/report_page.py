@@ -1,7 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""report_page.py PROGRAM SOURCE: pages of `tandem report` and `tandem view` in Chromium. They load without errors or
-requests, show every cell, filter, sort, rotate the scene, fit a phone, and handle bad or very large input."""
+"""report_page.py PROGRAM SOURCE: pages of `tandem report` and `tandem view` in Chromium. They load without
+errors or requests, show every cell, filter, sort, rotate the scene, fit a phone, and handle bad or very large
+input."""
+
 import json
 import lzma
 import sys
@@ -16,11 +18,16 @@ MAX_CELLS = 6000  # of a page
 MARKUP = "<img src=x onerror=document.title='run'></script><script>document.title='run'</script>"
 ROWS = "[...document.querySelectorAll('#cell-table tbody tr')]"
 # The distinct pixels of the scene, as the beginning of a script.
-PIXELS = "(() => { const c = document.getElementById('scene-canvas'), g = c.getContext('webgl2') || c.getContext('webgl'), p = new Uint8Array(4 * c.width * c.height); " \
+PIXELS = (
+    "(() => { const c = document.getElementById('scene-canvas'), g = c.getContext('webgl2') || c.getContext('webgl'), p = new Uint8Array(4 * c.width * c.height); "
     "tandem.sceneView.draw(); g.readPixels(0, 0, c.width, c.height, g.RGBA, g.UNSIGNED_BYTE, p); const pixels = [...new Set(new Uint32Array(p.buffer))]; return "
+)
 # The number of distinct hues, of 36, among these pixels.
-HUES = PIXELS + "new Set(pixels.map(p => new THREE.Color(`rgb(${p & 255},${p >> 8 & 255},${p >> 16 & 255})`).getHSL({})).filter(c => c.s > 0.5)" \
+HUES = (
+    PIXELS
+    + "new Set(pixels.map(p => new THREE.Color(`rgb(${p & 255},${p >> 8 & 255},${p >> 16 & 255})`).getHSL({})).filter(c => c.s > 0.5)"
     ".map(c => Math.floor(c.h * 36))).size; })()"
+)
 CAMERA = "tandem.sceneView.camera.position.toArray().map(x => x.toFixed(4)).join()"
 
 
@@ -30,7 +37,11 @@ class Pages(ReportCase):
         for i in range(count):
             record = dict(self.plan[i % len(self.plan)])
             copy = i // len(self.plan)
-            record["scene"] = {**record["scene"], "key": f"{record['scene']['key']},copy={copy}", "digest": f"{copy:08x}{record['scene']['digest'][:8]}"}
+            record["scene"] = {
+                **record["scene"],
+                "key": f"{record['scene']['key']},copy={copy}",
+                "digest": f"{copy:08x}{record['scene']['digest'][:8]}",
+            }
             record["key"] += f"|copy={copy}"
             yield record
 
@@ -39,20 +50,35 @@ class Pages(ReportCase):
         return self.browser.run(f"{ROWS}.map(row => row.children[{place}].textContent)")
 
     def sort_by(self, name):
-        self.browser.run(f"[...document.querySelectorAll('#cell-table th button')].find(b => b.textContent === {json.dumps(name)}).click()")
+        self.browser.run(
+            f"[...document.querySelectorAll('#cell-table th button')].find(b => b.textContent === {json.dumps(name)}).click()"
+        )
         self.browser.until("document.querySelector('#cell-table tbody').dataset.complete === 'true'")
-        return self.browser.run("[...document.querySelectorAll('#cell-table th')].map(th => th.getAttribute('aria-sort')).filter(s => s !== 'none').join()")
+        return self.browser.run(
+            "[...document.querySelectorAll('#cell-table th')].map(th => th.getAttribute('aria-sort')).filter(s => s !== 'none').join()"
+        )
 
     def type(self, text):
-        self.browser.run(f"(() => {{ const box = document.getElementById('cell-filter'); box.value = {json.dumps(text)}; box.dispatchEvent(new Event('input')); }})()")
+        self.browser.run(
+            f"(() => {{ const box = document.getElementById('cell-filter'); box.value = {json.dumps(text)}; box.dispatchEvent(new Event('input')); }})()"
+        )
         self.browser.until("document.querySelector('#cell-table tbody').dataset.complete === 'true'")
         return self.browser.run("document.getElementById('cell-count').textContent")
 
     def test_all_committed_records(self):
         files = ["plan", "profile", "accuracy", "ceilings", "simulation-colosseum", "simulation-funnel"]
-        page = self.report(*(RECORDS / f"{name}.jsonl" for name in files), "--scene", "plates", "--frames", "20:23", "--contacts")
+        page = self.report(
+            *(RECORDS / f"{name}.jsonl" for name in files),
+            "--scene",
+            "plates",
+            "--frames",
+            "20:23",
+            "--contacts",
+        )
         self.opened(page)
-        cells = sum(len((RECORDS / f"{name}.jsonl").read_text().splitlines()) for name in ("plan", "accuracy"))
+        cells = sum(
+            len((RECORDS / f"{name}.jsonl").read_text().splitlines()) for name in ("plan", "accuracy")
+        )
         self.assertEqual(self.browser.run(f"{ROWS}.length"), cells)
         self.check_charts()
         self.check_scene()
@@ -61,19 +87,25 @@ class Pages(ReportCase):
 
     def check_charts(self):
         figures = self.browser.run("[...document.querySelectorAll('figure')].map(figure => figure.id)")
-        self.assertEqual(set(figures), {"medians", "sweeps", "stages", "curves", "error", "roofline", "simulations"})
+        self.assertEqual(
+            set(figures), {"medians", "sweeps", "stages", "curves", "error", "roofline", "simulations"}
+        )
         for figure in figures:
             self.browser.run(f"document.getElementById('{figure}').scrollIntoView()")
             self.browser.until(f"document.getElementById('{figure}').dataset.drawn === 'true'")
-        empty = "[...document.querySelectorAll('figure')].filter(f => !f.querySelector('h3').textContent || !f.querySelector('tbody tr') || " \
+        empty = (
+            "[...document.querySelectorAll('figure')].filter(f => !f.querySelector('h3').textContent || !f.querySelector('tbody tr') || "
             "f.querySelector('canvas').getAttribute('aria-label').length < 40).map(f => f.id)"
+        )
         self.assertEqual(self.browser.run(empty), [])
         blank = "[...document.querySelectorAll('figure canvas')].filter(c => !c.getContext('2d').getImageData(0, 0, c.width, c.height).data.some(b => b)).length"
         self.assertEqual(self.browser.run(blank), 0)
         # Another choice gives another chart.
         title = "document.querySelector('#medians h3').textContent"
         before = self.browser.run(title)
-        self.browser.run("(() => { const s = document.querySelector('#medians select'); s.selectedIndex = 1; s.dispatchEvent(new Event('change')); })()")
+        self.browser.run(
+            "(() => { const s = document.querySelector('#medians select'); s.selectedIndex = 1; s.dispatchEvent(new Event('change')); })()"
+        )
         self.assertNotEqual(self.browser.run(title), before)
 
     def check_scene(self):
@@ -87,19 +119,25 @@ class Pages(ReportCase):
         self.browser.key("ArrowRight")
         turned = run(CAMERA)
         self.assertNotEqual(turned, before)
-        box = run("(() => { const r = document.getElementById('scene-canvas').getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; })()")
+        box = run(
+            "(() => { const r = document.getElementById('scene-canvas').getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; })()"
+        )
         self.browser.drag(box, [box[0] + 90, box[1] + 30])
         self.assertNotEqual(run(CAMERA), turned)
         words = run("document.getElementById('scene-words').textContent")
         self.assertRegex(words, r"^Frame 20: 3 bodies of 5,130 tetrahedra, \d+,\d{3} contacts\.$")
-        run("(() => { const s = document.getElementById('frame-slider'); s.value = 3; s.dispatchEvent(new Event('input')); })()")
+        run(
+            "(() => { const s = document.getElementById('frame-slider'); s.value = 3; s.dispatchEvent(new Event('input')); })()"
+        )
         self.assertIn("Frame 23:", run("document.getElementById('scene-words').textContent"))
         self.assertEqual(run("tandem.sceneView.frame"), 3)
         self.browser.key("PageUp")
         self.assertIn("Frame 22:", run("document.getElementById('scene-words').textContent"))
         run("[...document.querySelectorAll('#view button')].find(b => b.textContent === 'Contacts').click()")
         bodies = run(HUES)
-        run("(() => { const s = [...document.querySelectorAll('#view select')][0]; s.value = 'chunk'; s.dispatchEvent(new Event('change')); })()")
+        run(
+            "(() => { const s = [...document.querySelectorAll('#view select')][0]; s.value = 'chunk'; s.dispatchEvent(new Event('change')); })()"
+        )
         self.assertGreater(run(HUES), 3 * bodies)
 
     def check_sizes_and_colours(self):
@@ -111,19 +149,33 @@ class Pages(ReportCase):
         self.browser.size(390, 844, mobile=True)
         wide = "[...document.querySelectorAll('body *')].filter(e => e.getBoundingClientRect().right > 391 && !e.closest('.tall, .scrolls')).map(e => e.outerHTML.slice(0, 90))"
         self.browser.run("new Promise(done => setTimeout(done, 500))")
-        self.assertEqual(self.browser.run("document.documentElement.scrollWidth"), 390, self.browser.run(wide))
+        self.assertEqual(
+            self.browser.run("document.documentElement.scrollWidth"), 390, self.browser.run(wide)
+        )
         self.browser.size(1280, 900)
         self.browser.ask("Emulation.setEmulatedMedia", media="print")
-        self.assertEqual(self.browser.run("[...document.querySelectorAll('.controls')].some(c => c.getClientRects().length)"), False)
-        self.assertEqual(self.browser.run("[...document.querySelectorAll('figure canvas')].every(c => c.getClientRects().length)"), True)
+        self.assertEqual(
+            self.browser.run(
+                "[...document.querySelectorAll('.controls')].some(c => c.getClientRects().length)"
+            ),
+            False,
+        )
+        self.assertEqual(
+            self.browser.run(
+                "[...document.querySelectorAll('figure canvas')].every(c => c.getClientRects().length)"
+            ),
+            True,
+        )
         self.browser.ask("Emulation.setEmulatedMedia", media="")
 
     def too_wide(self):
         """Tables that are wider than their boxes, with all numbers of charts shown."""
         self.browser.run("document.querySelectorAll('details').forEach(one => one.open = true)")
         self.browser.run("new Promise(done => setTimeout(done, 300))")
-        return self.browser.run("[...document.querySelectorAll('.tall, .scrolls')].filter(box => box.scrollWidth > box.clientWidth)"
-                                ".map(box => [box.closest('figure, section').id, box.scrollWidth, box.clientWidth])")
+        return self.browser.run(
+            "[...document.querySelectorAll('.tall, .scrolls')].filter(box => box.scrollWidth > box.clientWidth)"
+            ".map(box => [box.closest('figure, section').id, box.scrollWidth, box.clientWidth])"
+        )
 
     def test_tables_fit_1400_pixels_and_are_cards_on_a_phone(self):
         files = ["plan", "profile", "accuracy", "ceilings"]
@@ -136,10 +188,14 @@ class Pages(ReportCase):
         self.opened(page)
         self.assertEqual(self.too_wide(), [])
         self.assertEqual(self.browser.run("document.documentElement.scrollWidth"), 390)
-        labels = self.browser.run(f"[...{ROWS}[0].children].filter(field => field.getClientRects().length)"
-                                  ".map(field => getComputedStyle(field, '::before').content)")
+        labels = self.browser.run(
+            f"[...{ROWS}[0].children].filter(field => field.getClientRects().length)"
+            ".map(field => getComputedStyle(field, '::before').content)"
+        )
         self.assertEqual(labels[:4], ['"cell"', '"ms a frame"', '"95 %"', '"status"'])
-        tops = self.browser.run(f"[...{ROWS}[0].children].filter(field => field.getClientRects().length).map(field => field.getBoundingClientRect().top)")
+        tops = self.browser.run(
+            f"[...{ROWS}[0].children].filter(field => field.getClientRects().length).map(field => field.getBoundingClientRect().top)"
+        )
         self.assertEqual(tops, sorted(set(tops)))
         self.assertEqual(self.sort_by("ms a frame"), "ascending")
 
@@ -147,7 +203,11 @@ class Pages(ReportCase):
         path = self.write("many.jsonl", self.made_up(MANY))
         page = self.report(path, "--scene", "plates", "--frames", "0:99" if LONG else "0:9")
         seconds = self.opened(page)
-        print(f"\n  {MANY} cells and a scene: {page.stat().st_size / 1e6:.1f} MB, whole after {seconds:.2f} s", end="", file=sys.stderr)
+        print(
+            f"\n  {MANY} cells and a scene: {page.stat().st_size / 1e6:.1f} MB, whole after {seconds:.2f} s",
+            end="",
+            file=sys.stderr,
+        )
         self.assertEqual(self.browser.run(f"{ROWS}.length"), MANY)
         self.check_sorting()
         self.check_filters()
@@ -168,12 +228,16 @@ class Pages(ReportCase):
         tiled = sum(record["algorithm"] == "tiled" for record in self.made_up(MANY))
         self.assertEqual(self.type("tiled"), f"{tiled} of {MANY} cells")
         self.assertEqual(set(self.column("algorithm")), {"tiled"})
-        both = sum(record["algorithm"] == "tiled" and record["settings"]["k"] == "8" for record in self.made_up(MANY))
+        both = sum(
+            record["algorithm"] == "tiled" and record["settings"]["k"] == "8" for record in self.made_up(MANY)
+        )
         self.assertEqual(self.type("tiled k=8"), f"{both} of {MANY} cells")
         self.assertEqual(self.type("nothing has this"), f"0 of {MANY} cells")
         self.type("")
-        self.browser.run("(() => { const s = [...document.querySelectorAll('#cells select')].find(s => s.parentNode.textContent.startsWith('algorithm')); "
-                         "s.value = 'gproximity'; s.dispatchEvent(new Event('change')); })()")
+        self.browser.run(
+            "(() => { const s = [...document.querySelectorAll('#cells select')].find(s => s.parentNode.textContent.startsWith('algorithm')); "
+            "s.value = 'gproximity'; s.dispatchEvent(new Event('change')); })()"
+        )
         self.browser.until("document.querySelector('#cell-table tbody').dataset.complete === 'true'")
         self.assertEqual(set(self.column("algorithm")), {"gproximity"})
         self.browser.run(f"{ROWS}[0].querySelector('button').click()")
@@ -193,7 +257,9 @@ class Pages(ReportCase):
         words = self.browser.run("document.getElementById('summary').textContent")
         self.assertIn("1 failed and 1 gave a wrong answer", words)
         self.assertIn("no memory <img", words)
-        ranked = self.browser.run("JSON.parse(document.getElementById('data-records').textContent).groups.flatMap(g => g.ranked.map(r => r[0])).sort()")
+        ranked = self.browser.run(
+            "JSON.parse(document.getElementById('data-records').textContent).groups.flatMap(g => g.ranked.map(r => r[0])).sort()"
+        )
         self.assertEqual(ranked, [3, 4])
         self.assertEqual(self.browser.run("document.title"), "Report of tandem")
         self.assertEqual(self.browser.run("document.images.length"), 0)
@@ -210,7 +276,9 @@ class Pages(ReportCase):
         packed.write_bytes(lzma.compress((json.dumps(interrupted) + "\n").encode()))
         self.opened(self.report(packed, whole))
         self.assertEqual(self.column("status"), ["ok", "ok"])
-        self.assertEqual(self.browser.run("document.getElementById('made').textContent.split('.')[0]"), "Files: packed")
+        self.assertEqual(
+            self.browser.run("document.getElementById('made').textContent.split('.')[0]"), "Files: packed"
+        )
         self.assertNotIn("recorded again", self.browser.run("document.getElementById('summary').textContent"))
 
     def test_against_equals_compare(self):
@@ -227,7 +295,9 @@ class Pages(ReportCase):
         compared = json.loads(tandem("compare", old, new, "--format", "json")[1])
         shown = self.browser.run("JSON.parse(document.getElementById('data-differences').textContent)")
         self.assertEqual(shown["summary"], compared["summary"])
-        self.assertIn(compared["summary"], self.browser.run("document.querySelector('#differences-title').textContent"))
+        self.assertIn(
+            compared["summary"], self.browser.run("document.querySelector('#differences-title').textContent")
+        )
         self.assertEqual(len(shown["cells"]), len(compared["cells"]))
         for a, b in zip(shown["cells"], compared["cells"]):
             self.assertEqual(a["label"], b["label"])
@@ -251,11 +321,15 @@ class Pages(ReportCase):
         slowest = max(shown["cells"], key=lambda row: row["ratio"][0])
         text(f"document.querySelector('#cell-table tr[data-cell=\"{slowest['cell']}\"] button').click()")
         details = self.text(".details")
-        self.assertRegex(details, r"comparison1\.1\d* times the time in tiled\.jsonl: ", "three rounds have no interval")
+        self.assertRegex(
+            details, r"comparison1\.1\d* times the time in tiled\.jsonl: ", "three rounds have no interval"
+        )
         self.assertIn(f"tiled.jsonl: {slowest['verdict']}conditions", details)
 
     def test_bad_files(self):
-        empty, other, text, cut = (self.work / name for name in ("empty.jsonl", "other.jsonl", "text.jsonl", "cut.jsonl.xz"))
+        empty, other, text, cut = (
+            self.work / name for name in ("empty.jsonl", "other.jsonl", "text.jsonl", "cut.jsonl.xz")
+        )
         empty.write_text("")
         self.write("other.jsonl", [{**self.plan[0], "schema": 5}])
         text.write_text("no record\n")
@@ -266,7 +340,10 @@ class Pages(ReportCase):
         self.bad("text.jsonl:1: is not JSON", "report", text, "-o", page)
         self.bad("cut.jsonl.xz: cannot be read", "report", cut, "-o", page)
         self.bad("cannot be read", "report", self.work / "nowhere.jsonl", "-o", page)
-        self.write("profile.jsonl", [{**json.loads((RECORDS / "profile.jsonl").read_text().splitlines()[0]), "schema": 7}])
+        self.write(
+            "profile.jsonl",
+            [{**json.loads((RECORDS / "profile.jsonl").read_text().splitlines()[0]), "schema": 7}],
+        )
         self.bad("schema 7", "report", self.work / "profile.jsonl", "-o", page)
         self.assertFalse(page.exists())
         good = self.write("good.jsonl", self.plan[:1])
@@ -276,18 +353,41 @@ class Pages(ReportCase):
 
     def test_more_cells_than_a_page_shows(self):
         count = 100_000 if LONG else MAX_CELLS + 100
-        record = {name: value for name, value in self.plan[0].items() if name not in ("conditions", "breakdown_ns", "device_span_ns", "stages")}
-        record["total_ns"] = {"samples": [9, 8], "rounds": [0, 1], "median": 8.5, "low": 8, "high": 9, "frames": []}
-        line = json.dumps({**record, "key": "@", "scene": {**record["scene"], "key": "pile:number=@"}}).replace('"@"', '"key @"')
+        record = {
+            name: value
+            for name, value in self.plan[0].items()
+            if name not in ("conditions", "breakdown_ns", "device_span_ns", "stages")
+        }
+        record["total_ns"] = {
+            "samples": [9, 8],
+            "rounds": [0, 1],
+            "median": 8.5,
+            "low": 8,
+            "high": 9,
+            "frames": [],
+        }
+        line = json.dumps(
+            {**record, "key": "@", "scene": {**record["scene"], "key": "pile:number=@"}}
+        ).replace('"@"', '"key @"')
         path = self.work / "long.jsonl"
         with open(path, "w") as out:
             out.writelines(line.replace("@", str(i)) + "\n" for i in range(count))
         begin = time.time()
         page = self.report(path, notes=1)
-        print(f"\n  {count} lines: {time.time() - begin:.1f} s, {page.stat().st_size / 1e6:.1f} MB", end="", file=sys.stderr)
+        print(
+            f"\n  {count} lines: {time.time() - begin:.1f} s, {page.stat().st_size / 1e6:.1f} MB",
+            end="",
+            file=sys.stderr,
+        )
         self.opened(page)
-        self.assertRegex(self.browser.run("document.querySelector('.bad').textContent"), f"{count - MAX_CELLS} of {count} records of cells are left out")
-        self.assertEqual(self.browser.run(f"{ROWS}.length"), self.browser.run("JSON.parse(document.getElementById('data-records').textContent).cells.length"))
+        self.assertRegex(
+            self.browser.run("document.querySelector('.bad').textContent"),
+            f"{count - MAX_CELLS} of {count} records of cells are left out",
+        )
+        self.assertEqual(
+            self.browser.run(f"{ROWS}.length"),
+            self.browser.run("JSON.parse(document.getElementById('data-records').textContent).cells.length"),
+        )
 
     def test_view_of_a_large_scene_is_reduced(self):
         page = self.work / "view.html"
@@ -303,7 +403,10 @@ class Pages(ReportCase):
     def test_without_webgl(self):
         page = self.work / "plain.html"
         self.assertEqual(tandem("view", "plates", "--frames", "0:1", "-o", page)[0], 0)
-        script = self.browser.ask("Page.addScriptToEvaluateOnNewDocument", source="HTMLCanvasElement.prototype.getContext = () => null")
+        script = self.browser.ask(
+            "Page.addScriptToEvaluateOnNewDocument",
+            source="HTMLCanvasElement.prototype.getContext = () => null",
+        )
         self.browser.open(page)
         self.browser.ask("Page.removeScriptToEvaluateOnNewDocument", identifier=script["identifier"])
         self.browser.until("Boolean(document.querySelector('#view .bad'))")

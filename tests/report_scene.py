@@ -1,6 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""report_scene.py PROGRAM SOURCE: the scene on a page of `tandem view` in Chromium fills its box, and leaves scrolling to the page."""
+"""report_scene.py PROGRAM SOURCE: the scene on a page of `tandem view` in Chromium fills its box, and leaves
+scrolling to the page."""
+
 import sys
 import unittest
 
@@ -48,29 +50,40 @@ class Scenes(ReportCase):
         self.browser.run("new Promise(done => setTimeout(done, 300))")
 
     def test_the_scene_fills_its_box(self):
-        for scene in (("plates", "--frames", "20"), ("pile:bodies=60,frames=2", "--frames", "0"), ("pile:bodies=300,frames=1",)):
+        for scene in (
+            ("plates", "--frames", "20"),
+            ("pile:bodies=60,frames=2", "--frames", "0"),
+            ("pile:bodies=300,frames=1",),
+        ):
             for width, height in ((1400, 900), (390, 844)):
                 self.view(scene, width, height)
                 left, right, bottom, top = self.browser.run(EXTENT)
                 self.assertGreater(max(right - left, top - bottom), 0.8, (scene, width))
-                self.assertTrue(left > 0 and right < 1 and bottom > 0 and top < 1, (scene, width, left, right, bottom, top))
+                self.assertTrue(
+                    left > 0 and right < 1 and bottom > 0 and top < 1,
+                    (scene, width, left, right, bottom, top),
+                )
 
     def pixels(self, frame):
         """{colour: number of its pixels} of the points of contacts alone."""
-        self.browser.run(f"tandem.sceneView.show({frame}); tandem.sceneView.objects.forEach(object => {{ object.visible = false; }}); "
-                         "tandem.sceneView.contacts.normals.visible = false")
+        self.browser.run(
+            f"tandem.sceneView.show({frame}); tandem.sceneView.objects.forEach(object => {{ object.visible = false; }}); "
+            "tandem.sceneView.contacts.normals.visible = false"
+        )
         return self.browser.run(COLOURS)
 
     def test_contacts_have_the_colours_of_their_depths(self):
         self.view(("plates", "--frames", "20:21", "--contacts"), 1400, 900)
-        data = self.browser.run("({deepest: tandem.sceneView.data.deepest, depths: [0, 1].map(i => [...tandem.depthsOf(tandem.sceneView.data, i)])})")
+        data = self.browser.run(
+            "({deepest: tandem.sceneView.data.deepest, depths: [0, 1].map(i => [...tandem.depthsOf(tandem.sceneView.data, i)])})"
+        )
         deepest, depths = data["deepest"], data["depths"]
         self.assertEqual(max(map(max, depths)), 65534)
         self.assertGreater(deepest, 0)
         frame = 0 if 65534 in depths[0] else 1
         drawn = self.pixels(frame)
-        self.assertIn("253,231,37", drawn)   # the deepest is yellow
-        self.assertGreater(len(drawn), 10)   # others have colours between
+        self.assertIn("253,231,37", drawn)  # the deepest is yellow
+        self.assertGreater(len(drawn), 10)  # others have colours between
         self.assertNotIn("255,45,149", drawn)
         legend = self.text("#depth-legend")
         for part in ("depth of contacts", f"{deepest:.4g} m", f"{deepest / 2:.4g} m"):

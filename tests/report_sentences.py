@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""report_sentences.py PROGRAM SOURCE: what a page about records states (python/tandem/report): groups, ranks, sentences,
-conditions, and omissions for lack of space."""
+"""report_sentences.py PROGRAM SOURCE: what a page about records states (python/tandem/report): groups, ranks,
+sentences, conditions, and omissions for lack of space."""
+
 import copy
 import json
 import sys
@@ -25,14 +26,46 @@ TWO_MS = [2 * ms for ms in ONE_MS]
 
 def cell_of(algorithm, rounds, k="18", **changes):
     """A cell with these times of its rounds, in ms of its single frame."""
-    names = {"algorithm": algorithm, "preset": "resident", "devices": "cuda:0", "model": "GPU", "driver": "1", "scene": "pile",
-             "frames": "frames 0:0", "handling": "", "digest": "digest 1"}
-    recorded = RecordedCell(line=1, schema=3, key=f"{algorithm}|k={k}", status="ok", failure="", names=names, settings={"k": k}, frames=1,
-                            on_gpus=True, session="", seed=None, samples=len(rounds), rounds={i: 1e6 * ms for i, ms in enumerate(rounds)},
-                            pairs=None, contacts=None, commit="", processor="", dirty=False)
+    names = {
+        "algorithm": algorithm,
+        "preset": "resident",
+        "devices": "cuda:0",
+        "model": "GPU",
+        "driver": "1",
+        "scene": "pile",
+        "frames": "frames 0:0",
+        "handling": "",
+        "digest": "digest 1",
+    }
+    recorded = RecordedCell(
+        line=1,
+        schema=3,
+        key=f"{algorithm}|k={k}",
+        status="ok",
+        failure="",
+        names=names,
+        settings={"k": k},
+        frames=1,
+        on_gpus=True,
+        session="",
+        seed=None,
+        samples=len(rounds),
+        rounds={i: 1e6 * ms for i, ms in enumerate(rounds)},
+        pairs=None,
+        contacts=None,
+        commit="",
+        processor="",
+        dirty=False,
+    )
     for name, value in changes.items():
         setattr(recorded, name, value)
-    return ShownCell(recorded, "pile:bodies=3", "pile", "1", row=[{} if name == "stages" else f"text {algorithm}" for name in list(FIELDS)[:-1]])
+    return ShownCell(
+        recorded,
+        "pile:bodies=3",
+        "pile",
+        "1",
+        row=[{} if name == "stages" else f"text {algorithm}" for name in list(FIELDS)[:-1]],
+    )
 
 
 def groups_and_sentences(cells):
@@ -47,31 +80,54 @@ class Sentences(unittest.TestCase):
         groups, sentences = groups_and_sentences(cells)
         self.assertEqual([group.title for group in groups], ["pile, frames 0:0, k = 18, on cuda:0 (GPU)"])
         self.assertEqual([ranked.cell for ranked in groups[0].ranked], [1, 0])
-        self.assertIn("quick is the fastest of 2 with 1.000 ms a frame; the next, slow, takes 2.000 times as long [", sentences)
+        self.assertIn(
+            "quick is the fastest of 2 with 1.000 ms a frame; the next, slow, takes 2.000 times as long [",
+            sentences,
+        )
         summary = summary_sentences(groups, cells)
-        self.assertEqual("quick is the fastest in the only comparison; the best other algorithm takes 2.000 times as long.", summary[0])
+        self.assertEqual(
+            "quick is the fastest in the only comparison; the best other algorithm takes 2.000 times as long.",
+            summary[0],
+        )
         self.assertEqual(len(summary), 1)
 
     def test_the_slowest_of_three(self):
-        _, sentences = groups_and_sentences([cell_of("a", ONE_MS), cell_of("b", TWO_MS), cell_of("c", [3 * ms for ms in ONE_MS])])
+        _, sentences = groups_and_sentences(
+            [cell_of("a", ONE_MS), cell_of("b", TWO_MS), cell_of("c", [3 * ms for ms in ONE_MS])]
+        )
         self.assertIn("a is the fastest of 3 with 1.000 ms a frame; the next, b, takes 2.000", sentences)
         self.assertIn("The slowest, c, takes 3.000 times as long", sentences)
 
     def test_the_stage_that_makes_the_difference(self):
-        """Compared with the first cell that takes longer with its whole interval; times of stages that are shorter count against others."""
+        """Compared with the first cell that takes longer with its whole interval; times of stages that are
+        shorter count against others."""
+
         def named(first, second, third=None):
-            cells = [cell_of("a", ONE_MS), cell_of("b", TWO_MS)] + ([cell_of("c", [ms + 0.001 for ms in ONE_MS])] if third else [])
+            cells = [cell_of("a", ONE_MS), cell_of("b", TWO_MS)] + (
+                [cell_of("c", [ms + 0.001 for ms in ONE_MS])] if third else []
+            )
             for cell, stages in zip(cells, (first, second, third)):
                 cell.row[STAGES] = {name: [ms, 0.0, 1, 0] for name, ms in (stages or {}).items()}
             return groups_and_sentences(cells)[1].partition("[")[2].partition("]. ")[2]
-        self.assertEqual(named({"traverse": 0.5, "contact": 0.4}, {"traverse": 1.3, "contact": 0.6}),
-                         "Most of the difference from b is in stage traverse: 0.500 ms a frame instead of 1.300.")
-        self.assertEqual(named({"traverse": 0.5}, {"traverse": 0.4, "balance": 1.0}),
-                         "Most of the difference from b is in stage balance: 0 ms a frame instead of 1.000.")
-        self.assertEqual(named({"traverse": 0.5, "contact": 0.3}, {"traverse": 0.9, "contact": 0.8, "refit": 0.3}),
-                         "The largest part of the difference from b is in stage contact: 0.300 ms a frame instead of 0.800.")
-        self.assertIn("from b is in stage traverse", named({"traverse": 0.5}, {"traverse": 1.5}, {"traverse": 3.0}))
-        self.assertEqual([named({}, {"traverse": 1.5}), named({"traverse": 1.0}, {"traverse": 0.9})], ["", ""])
+
+        self.assertEqual(
+            named({"traverse": 0.5, "contact": 0.4}, {"traverse": 1.3, "contact": 0.6}),
+            "Most of the difference from b is in stage traverse: 0.500 ms a frame instead of 1.300.",
+        )
+        self.assertEqual(
+            named({"traverse": 0.5}, {"traverse": 0.4, "balance": 1.0}),
+            "Most of the difference from b is in stage balance: 0 ms a frame instead of 1.000.",
+        )
+        self.assertEqual(
+            named({"traverse": 0.5, "contact": 0.3}, {"traverse": 0.9, "contact": 0.8, "refit": 0.3}),
+            "The largest part of the difference from b is in stage contact: 0.300 ms a frame instead of 0.800.",
+        )
+        self.assertIn(
+            "from b is in stage traverse", named({"traverse": 0.5}, {"traverse": 1.5}, {"traverse": 3.0})
+        )
+        self.assertEqual(
+            [named({}, {"traverse": 1.5}), named({"traverse": 1.0}, {"traverse": 0.9})], ["", ""]
+        )
 
     def test_indistinguishable_cells(self):
         nearly = [ONE_MS[4], ONE_MS[1] + 0.002, *ONE_MS[2:4], ONE_MS[0], *ONE_MS[5:]]
@@ -87,11 +143,27 @@ class Sentences(unittest.TestCase):
     def test_a_title_agrees_with_its_sentence(self):
         """Title, sentence and the words behind the name of the first come from one verdict."""
         nearly = [ONE_MS[4], ONE_MS[1] + 0.002, *ONE_MS[2:4], ONE_MS[0], *ONE_MS[5:]]
-        for other, first, behind, word in ((TWO_MS, "a is the fastest; the next takes 2.000 times as long [", ", the fastest", "is the fastest of 2"),
-                                           (nearly, "a and the next are not told apart: 1.000 times as long [", ", which has the lowest median", "is not told apart from it"),
-                                           ([2.0], "a has the lowest median; the next takes 2.000 times as long (one round: no interval)", ", which has the lowest median",
-                                            "(one round: no interval)")):
-            cells = [cell_of("a", ONE_MS[:len(other)]), cell_of("b", other)]
+        for other, first, behind, word in (
+            (
+                TWO_MS,
+                "a is the fastest; the next takes 2.000 times as long [",
+                ", the fastest",
+                "is the fastest of 2",
+            ),
+            (
+                nearly,
+                "a and the next are not told apart: 1.000 times as long [",
+                ", which has the lowest median",
+                "is not told apart from it",
+            ),
+            (
+                [2.0],
+                "a has the lowest median; the next takes 2.000 times as long (one round: no interval)",
+                ", which has the lowest median",
+                "(one round: no interval)",
+            ),
+        ):
+            cells = [cell_of("a", ONE_MS[: len(other)]), cell_of("b", other)]
             group = json.loads(data_of(Records(cells=cells), 1_000_000, "", "").json)["groups"][0]
             self.assertTrue(group["lead"]["title"].startswith(first), group)
             self.assertEqual(group["lead"]["which"], behind)
@@ -100,28 +172,47 @@ class Sentences(unittest.TestCase):
     def test_a_lower_paired_ratio_is_no_lead(self):
         """The second has the greater median, but most of its rounds are faster than those of the first."""
         rounds = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 3.0, 3.0, 3.0, 3.0]
-        cells = [cell_of("a", rounds, session="s"), cell_of("b", [0.99 * ms + 0.0 for ms in rounds[:5]] + [1.2] + [2.9] * 4, session="s")]
+        cells = [
+            cell_of("a", rounds, session="s"),
+            cell_of("b", [0.99 * ms + 0.0 for ms in rounds[:5]] + [1.2] + [2.9] * 4, session="s"),
+        ]
         groups, sentences = groups_and_sentences(cells)
-        self.assertTrue(groups[0].ranked[1].is_told_apart and groups[0].ranked[1].ratio.high < 1, groups[0].ranked)
+        self.assertTrue(
+            groups[0].ranked[1].is_told_apart and groups[0].ranked[1].ratio.high < 1, groups[0].ranked
+        )
         self.assertIn("has the lowest median", sentences)
 
     def test_wins_that_are_not_all_told_apart(self):
         nearly = [ONE_MS[4], ONE_MS[1] + 0.002, *ONE_MS[2:4], ONE_MS[0], *ONE_MS[5:]]
-        cells = [cell_of("a", ONE_MS), cell_of("b", nearly), cell_of("a", ONE_MS, "8"), cell_of("b", TWO_MS, "8")]
-        self.assertEqual(summary_sentences(groups_of(cells), cells)[0], "a has the lowest median in all 2 comparisons; "
-                         "the best other algorithm takes 1.000 to 2.000 times as long, and is told apart from it in 1 of these.")
+        cells = [
+            cell_of("a", ONE_MS),
+            cell_of("b", nearly),
+            cell_of("a", ONE_MS, "8"),
+            cell_of("b", TWO_MS, "8"),
+        ]
+        self.assertEqual(
+            summary_sentences(groups_of(cells), cells)[0],
+            "a has the lowest median in all 2 comparisons; "
+            "the best other algorithm takes 1.000 to 2.000 times as long, and is told apart from it in 1 of these.",
+        )
 
     def test_rounds_of_one_session_are_pairs(self):
         """Rounds that rise and fall together distinguish cells of one session, but not cells of two sessions."""
         tide = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]
         for sessions, is_distinguished in ((("s", "s"), True), (("s", "t"), False)):
-            cells = [cell_of(name, [factor * ms for ms in tide], session=session)
-                     for name, factor, session in zip("ab", (1, 1.05), sessions)]
+            cells = [
+                cell_of(name, [factor * ms for ms in tide], session=session)
+                for name, factor, session in zip("ab", (1, 1.05), sessions)
+            ]
             self.assertEqual(groups_of(cells)[0].ranked[1].is_told_apart, is_distinguished)
 
     def test_failed_wrong_and_older_are_never_ranked(self):
-        cells = [cell_of("a", TWO_MS), cell_of("b", ONE_MS, status="wrong"), cell_of("c", ONE_MS, status="failed", failure="no memory"),
-                 cell_of("d", ONE_MS)]
+        cells = [
+            cell_of("a", TWO_MS),
+            cell_of("b", ONE_MS, status="wrong"),
+            cell_of("c", ONE_MS, status="failed", failure="no memory"),
+            cell_of("d", ONE_MS),
+        ]
         cells[3].is_older = True
         groups, sentences = groups_and_sentences(cells)
         self.assertEqual([ranked.cell for ranked in groups[0].ranked], [0])
@@ -133,7 +224,9 @@ class Sentences(unittest.TestCase):
         self.assertIn("1 were recorded again later", summary[1])
 
     def test_of_many_failures_some_are_named(self):
-        _, sentences = groups_and_sentences([cell_of(f"a{i}", [], status="failed", failure="x" * 150) for i in range(40)])
+        _, sentences = groups_and_sentences(
+            [cell_of(f"a{i}", [], status="failed", failure="x" * 150) for i in range(40)]
+        )
         self.assertTrue(sentences.startswith("None of its cells has valid times."), sentences)
         self.assertTrue(sentences.endswith(" There are more."), sentences)
         self.assertLess(len(sentences), 1300)
@@ -142,18 +235,25 @@ class Sentences(unittest.TestCase):
         self.assertEqual(len(groups_of([cell_of("a", ONE_MS), cell_of("a", TWO_MS, "8")])), 2)
 
     def test_different_answers_have_no_fastest(self):
-        cells = [cell_of("a", ONE_MS, pairs=Answer(3, "1", "2")), cell_of("b", TWO_MS, pairs=Answer(4, "1", "2"))]
+        cells = [
+            cell_of("a", ONE_MS, pairs=Answer(3, "1", "2")),
+            cell_of("b", TWO_MS, pairs=Answer(4, "1", "2")),
+        ]
         groups, sentences = groups_and_sentences(cells)
         self.assertIn("none counts as the fastest", sentences)
         self.assertEqual(summary_sentences(groups, cells), [])
 
     def test_without_pairs_nothing_is_ranked(self):
-        groups, _ = groups_and_sentences([cell_of("a", ONE_MS, pairs=Answer(0, "0", "0")), cell_of("b", TWO_MS)])
+        groups, _ = groups_and_sentences(
+            [cell_of("a", ONE_MS, pairs=Answer(0, "0", "0")), cell_of("b", TWO_MS)]
+        )
         self.assertEqual([ranked.cell for ranked in groups[0].ranked], [1])
 
     def test_processors(self):
         cells = [cell_of("a", ONE_MS, on_gpus=False)]
-        self.assertEqual(summary_sentences(groups_of(cells), cells), ["Times on processors do not predict times on a GPU."])
+        self.assertEqual(
+            summary_sentences(groups_of(cells), cells), ["Times on processors do not predict times on a GPU."]
+        )
 
 
 def swept(setting, values, times, **changes):
@@ -167,15 +267,31 @@ def swept(setting, values, times, **changes):
 
 class Sweeps(unittest.TestCase):
     def test_a_line_and_its_verdict(self):
-        sweep, = sweeps_of(swept("seed_threshold", ["1000", "0", "10"], [TWO_MS, [3 * ms for ms in ONE_MS], ONE_MS]))
-        self.assertEqual((sweep["setting"], sweep["of"], sweep["all"]), ("seed_threshold", "pile:bodies=3, frames 0:0, k = 18, on cuda:0 (GPU)", 1))
+        (sweep,) = sweeps_of(
+            swept("seed_threshold", ["1000", "0", "10"], [TWO_MS, [3 * ms for ms in ONE_MS], ONE_MS])
+        )
+        self.assertEqual(
+            (sweep["setting"], sweep["of"], sweep["all"]),
+            ("seed_threshold", "pile:bodies=3, frames 0:0, k = 18, on cuda:0 (GPU)", 1),
+        )
         self.assertEqual(sweep["lines"], [{"name": "a", "points": [[0, 1], [10, 2], [1000, 0]]}])
-        self.assertTrue(sweep["title"].startswith("seed_threshold = 10 is the fastest; the next takes 2.000 times as long ["), sweep)
-        self.assertIn("seed_threshold = 10 is the fastest of 3 cells with 1.000 ms a frame; the next, seed_threshold = 1000, takes", sweep["words"])
+        self.assertTrue(
+            sweep["title"].startswith(
+                "seed_threshold = 10 is the fastest; the next takes 2.000 times as long ["
+            ),
+            sweep,
+        )
+        self.assertIn(
+            "seed_threshold = 10 is the fastest of 3 cells with 1.000 ms a frame; the next, seed_threshold = 1000, takes",
+            sweep["words"],
+        )
 
     def test_one_round_has_no_fastest(self):
-        sweep, = sweeps_of(swept("seed_threshold", ["0", "1", "2"], [[1.0], [2.0], [3.0]]))
-        self.assertEqual(sweep["title"], "seed_threshold = 0 has the lowest median; the next takes 2.000 times as long (one round: no interval)")
+        (sweep,) = sweeps_of(swept("seed_threshold", ["0", "1", "2"], [[1.0], [2.0], [3.0]]))
+        self.assertEqual(
+            sweep["title"],
+            "seed_threshold = 0 has the lowest median; the next takes 2.000 times as long (one round: no interval)",
+        )
 
     def test_other_answers_and_other_bounds(self):
         times = [ONE_MS, TWO_MS, TWO_MS]
@@ -187,8 +303,14 @@ class Sweeps(unittest.TestCase):
         for i, cell in enumerate(cells):
             cell.recorded.pairs = Answer(3 + i, "1", "2")
         self.assertIn("k = 6 is the fastest", sweeps_of(cells)[0]["title"])
-        cells = [*swept("seed_threshold", ["0", "1", "2"], times), *swept("seed_threshold", ["0", "1", "2"], times, k="8")]
-        self.assertEqual([(sweep["of"].split(", ")[2], sweep["all"]) for sweep in sweeps_of(cells)], [("k = 18", 1), ("k = 8", 1)])
+        cells = [
+            *swept("seed_threshold", ["0", "1", "2"], times),
+            *swept("seed_threshold", ["0", "1", "2"], times, k="8"),
+        ]
+        self.assertEqual(
+            [(sweep["of"].split(", ")[2], sweep["all"]) for sweep in sweeps_of(cells)],
+            [("k = 18", 1), ("k = 8", 1)],
+        )
 
     def test_what_is_no_sweep(self):
         times = [ONE_MS, TWO_MS, TWO_MS]
@@ -200,11 +322,23 @@ class Sweeps(unittest.TestCase):
 class Conditions(unittest.TestCase):
     def test_readings_before_and_after(self):
         def reading(mhz, celsius, processes, busy):
-            return {"gpus": [{"sm_mhz": mhz, "temperature_c": celsius, "power_w": None, "other_processes": processes}],
-                    "processor": {"mhz": [2100, None, 2300], "other_cores": busy}}
-        conditions = {"before": reading(1980, 41, 0, 0.5), "after": reading(1980, 52, 0, 0.25), "disturbed": [{"why": "clocks fell"}]}
-        self.assertEqual(conditions_text({"conditions": conditions}), "GPU at 1980 MHz, 41 to 52 °C, processor at 2100 to 2300 MHz, "
-                         "cores used by other processes: 0.25 to 0.5, 1 doubtful round, the first: clocks fell")
+            return {
+                "gpus": [
+                    {"sm_mhz": mhz, "temperature_c": celsius, "power_w": None, "other_processes": processes}
+                ],
+                "processor": {"mhz": [2100, None, 2300], "other_cores": busy},
+            }
+
+        conditions = {
+            "before": reading(1980, 41, 0, 0.5),
+            "after": reading(1980, 52, 0, 0.25),
+            "disturbed": [{"why": "clocks fell"}],
+        }
+        self.assertEqual(
+            conditions_text({"conditions": conditions}),
+            "GPU at 1980 MHz, 41 to 52 °C, processor at 2100 to 2300 MHz, "
+            "cores used by other processes: 0.25 to 0.5, 1 doubtful round, the first: clocks fell",
+        )
         conditions["after"] = reading(1755, 52, 2, 0.25)
         self.assertIn("GPU at 1755 to 1980 MHz", conditions_text({"conditions": conditions}))
         self.assertIn("other processes on it: 0 to 2", conditions_text({"conditions": conditions}))
@@ -212,9 +346,15 @@ class Conditions(unittest.TestCase):
 
     def test_samples(self):
         self.assertEqual(sampling_text({}), "not recorded")
-        self.assertEqual(sampling_text({"sampling": {"converged": True, "outliers": 0, "drift": None}}), "no problems")
-        self.assertEqual(sampling_text({"sampling": {"converged": False, "interrupted": True, "outliers": 3, "drift": 0.0123}}),
-                         "interval wider than requested, interrupted before it had enough samples, outliers: 3, drifted by 1.2 %")
+        self.assertEqual(
+            sampling_text({"sampling": {"converged": True, "outliers": 0, "drift": None}}), "no problems"
+        )
+        self.assertEqual(
+            sampling_text(
+                {"sampling": {"converged": False, "interrupted": True, "outliers": 3, "drift": 0.0123}}
+            ),
+            "interval wider than requested, interrupted before it had enough samples, outliers: 3, drifted by 1.2 %",
+        )
 
 
 class Data(unittest.TestCase):
@@ -237,10 +377,17 @@ class Data(unittest.TestCase):
         self.assertEqual(len(less["cells"]), 20)
         missing = sum(curve is None for curve in less["curves"])
         self.assertTrue(0 < missing < 20, missing)
-        self.assertEqual(less["notes"], [f"times by frame or by round of some cells are left out ({missing} lists), so that the page stays small"])
+        self.assertEqual(
+            less["notes"],
+            [
+                f"times by frame or by round of some cells are left out ({missing} lists), so that the page stays small"
+            ],
+        )
 
     def test_common_values_are_stored_once(self):
-        made = json.loads(data_of(Records(cells=[cell_of("a", ONE_MS), cell_of("a", TWO_MS)]), 1_000_000, "p", "d").json)
+        made = json.loads(
+            data_of(Records(cells=[cell_of("a", ONE_MS), cell_of("a", TWO_MS)]), 1_000_000, "p", "d").json
+        )
         self.assertEqual(made["values"], ["text a"])
         self.assertEqual((made["program"], made["date"], made["fields"][-1]), ("p", "d", "label"))
         self.assertEqual([row[0] for row in made["cells"]], [0, 0])

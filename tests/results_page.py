@@ -1,6 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""results_page.py PROGRAM SOURCE: scripts/results-page on made-up submissions: right, wrong, not compared, refused, hostile."""
+"""results_page.py PROGRAM SOURCE: scripts/results-page on made-up submissions: right, wrong, not compared,
+refused, hostile."""
+
 import copy
 import html.parser
 import json
@@ -47,10 +49,21 @@ class ResultsPage(ScriptCase):
         shutil.rmtree(self.results, ignore_errors=True)
         (self.results / "cpu").mkdir(parents=True)
         (self.results / "submitted").mkdir()
-        found = [record for record in committed("cpu/walks.jsonl") if record["scene"]["name"] == "pile" and record["agreement"]]
+        found = [
+            record
+            for record in committed("cpu/walks.jsonl")
+            if record["scene"]["name"] == "pile" and record["agreement"]
+        ]
         first = found[0]
-        self.base = [record for record in found if record["scene"]["digest"] == first["scene"]["digest"] and record["settings"]["k"] == first["settings"]["k"]][:3]
-        (self.results / "cpu/walks.jsonl").write_text("".join(json.dumps(record) + "\n" for record in self.base))
+        self.base = [
+            record
+            for record in found
+            if record["scene"]["digest"] == first["scene"]["digest"]
+            and record["settings"]["k"] == first["settings"]["k"]
+        ][:3]
+        (self.results / "cpu/walks.jsonl").write_text(
+            "".join(json.dumps(record) + "\n" for record in self.base)
+        )
         former = page_script.history
         page_script.history = lambda root: {COMMIT}
         self.addCleanup(setattr, page_script, "history", former)
@@ -75,7 +88,9 @@ class ResultsPage(ScriptCase):
         return shown.rows, errors, out.read_text()
 
     def submitted(self, name, *records):
-        text = "".join((record if isinstance(record, str) else json.dumps(record)) + "\n" for record in records)
+        text = "".join(
+            (record if isinstance(record, str) else json.dumps(record)) + "\n" for record in records
+        )
         (self.results / "submitted" / name).write_text(text)
 
     def test_a_right_answer_is_ranked_with_its_conditions(self):
@@ -83,35 +98,52 @@ class ResultsPage(ScriptCase):
         self.assertEqual([row[0] for row in rows if row], ["1", "2", "3"])
         record = self.submission()
         moment = {"gpus": [], "processor": {"mhz": 2345, "other_cores": 0.5}}
-        self.assertLessEqual(moment["processor"].keys(), set(json.dumps(gallery_schema()).replace('"', " ").split()))
+        self.assertLessEqual(
+            moment["processor"].keys(), set(json.dumps(gallery_schema()).replace('"', " ").split())
+        )
         self.submitted("anna.jsonl", record)
         rows, errors, text = self.page(0, "4 records, 1 submitted (0 wrong, 0 not compared), 0 lines refused")
         self.assertEqual(errors, [])
-        own, = [row for row in rows if row and row[-1] == "anna.jsonl:1, submitted"]
+        (own,) = [row for row in rows if row and row[-1] == "anna.jsonl:1, submitted"]
         self.assertTrue(own[0].isdigit())
         self.assertIn(own[7], COMMIT[:12])
         self.assertIn("1,647,388", own[4])
-        record["conditions"] = {"disturbed": [{"round": 0, "why": "other work"}], "before": moment, "after": moment}
-        self.assertIn("processor at 2345 MHz, cores used by other processes: 0.5, 1 doubtful round, the first: other work", self.shown(record)[5])
+        record["conditions"] = {
+            "disturbed": [{"round": 0, "why": "other work"}],
+            "before": moment,
+            "after": moment,
+        }
+        self.assertIn(
+            "processor at 2345 MHz, cores used by other processes: 0.5, 1 doubtful round, the first: other work",
+            self.shown(record)[5],
+        )
 
     def shown(self, record):
         """The row of a record whose conditions need not match the schema."""
         gathered = gallery_records.Gathered()
         gallery_records.add_file(gathered, self.file("conditions.jsonl", [record]), "conditions.jsonl")
         from gallery.page import html_of
+
         return next(row for row in Rows(html_of(gathered.sources, set(), [])).rows if row)
 
     def test_wrong_answers_are_shown_and_never_ranked(self):
-        for change in (lambda record: [part.update(digest={**part["digest"], "a": "00000000000000aa"}) for part in (record["work"], record["agreement"])],
-                       lambda record: record["work"].update(digest={**record["work"]["digest"], "b": "00000000000000bb"}),
-                       lambda record: record.update(status="wrong")):
+        for change in (
+            lambda record: [
+                part.update(digest={**part["digest"], "a": "00000000000000aa"})
+                for part in (record["work"], record["agreement"])
+            ],
+            lambda record: record["work"].update(
+                digest={**record["work"]["digest"], "b": "00000000000000bb"}
+            ),
+            lambda record: record.update(status="wrong"),
+        ):
             record = self.submission()
             change(record)
             self.submitted("bert.jsonl", record)
             rows, errors, text = self.page(1, "1 submitted (1 wrong, ")
             self.assertEqual(len(errors), 1)
             self.assertIn("bert.jsonl:1: its answer is wrong; it is shown and not ranked", errors[0])
-            own, = [row for row in rows if row and row[-1] == "bert.jsonl:1, submitted"]
+            (own,) = [row for row in rows if row and row[-1] == "bert.jsonl:1, submitted"]
             self.assertEqual((own[0], own[3]), ("wrong", ""))
             self.assertEqual(sum(row[0].isdigit() for row in rows if row), 3)
             self.assertIn("was wrong, and is not ranked", text)
@@ -142,18 +174,31 @@ class ResultsPage(ScriptCase):
             record = self.submission()
             change(record)
             return record
+
         nan = json.dumps(self.submission()).replace('"median": ', '"median": NaN, "unused": ', 1)
         for line, reason in (
-                (changed(lambda record: record.update(algorithm=3)), "does not match results/record.schema.json (/algorithm: "),
-                (changed(lambda record: record.update(rank=1)), "does not match results/record.schema.json (/: "),
-                (changed(lambda record: record.pop("frames")), "does not match results/record.schema.json"),
-                (self.submission(commit="fedcba987654"), "commit fedcba987654 is not in the history"), (self.submission(commit=None), "commit unknown is not in"),
-                (self.submission(commit="0"), "commit 0 is not in the history"), (self.submission(dirty=True), "built with changes that no commit has"),
-                (changed(lambda record: record["agreement"].update(missing=1)), "/agreement/missing: "),
-                (nan, "is not JSON"), (nan.replace("NaN", "1e999"), "is not JSON"), ("[]", "does not match"), ("{}", "does not match"), ("hello", "is not JSON")):
+            (
+                changed(lambda record: record.update(algorithm=3)),
+                "does not match results/record.schema.json (/algorithm: ",
+            ),
+            (changed(lambda record: record.update(rank=1)), "does not match results/record.schema.json (/: "),
+            (changed(lambda record: record.pop("frames")), "does not match results/record.schema.json"),
+            (self.submission(commit="fedcba987654"), "commit fedcba987654 is not in the history"),
+            (self.submission(commit=None), "commit unknown is not in"),
+            (self.submission(commit="0"), "commit 0 is not in the history"),
+            (self.submission(dirty=True), "built with changes that no commit has"),
+            (changed(lambda record: record["agreement"].update(missing=1)), "/agreement/missing: "),
+            (nan, "is not JSON"),
+            (nan.replace("NaN", "1e999"), "is not JSON"),
+            ("[]", "does not match"),
+            ("{}", "does not match"),
+            ("hello", "is not JSON"),
+        ):
             with self.subTest(reason):
                 self.submitted("frank.jsonl", line, self.submission())
-                rows, errors, text = self.page(1, "4 records, 1 submitted (0 wrong, 0 not compared), 1 lines refused")
+                rows, errors, text = self.page(
+                    1, "4 records, 1 submitted (0 wrong, 0 not compared), 1 lines refused"
+                )
                 self.assertEqual(len(errors), 1)
                 self.assertIn("frank.jsonl:1: ", errors[0])
                 self.assertIn(reason, errors[0])
@@ -166,7 +211,7 @@ class ResultsPage(ScriptCase):
         record["preset"] = "<b>x</b><script>alert(1)</script>\x1b[2J\n"
         self.submitted("<img src=x>.jsonl", record)
         rows, _, text = self.page(0, "1 submitted")
-        own, = [row for row in rows if row and "submitted" in row[-1]]
+        (own,) = [row for row in rows if row and "submitted" in row[-1]]
         self.assertEqual((own[0].isdigit(), own[-1]), (True, "<img src=x>.jsonl:1, submitted"))
         self.assertIn("<script>alert(1)</script>\\x1b[2J", own[1])
         self.assertNotIn("\x1b", text)
@@ -190,7 +235,9 @@ class ResultsPage(ScriptCase):
         gathered = page_script.gathered_from(SOURCE / "results", [], {COMMIT})
         page_script.judge(gathered.sources)
         self.assertGreater(len(gathered.sources), 500)
-        self.assertEqual([source.place for source in gathered.sources if source.shown.recorded.status != "ok"], [])
+        self.assertEqual(
+            [source.place for source in gathered.sources if source.shown.recorded.status != "ok"], []
+        )
 
 
 def gallery_schema():

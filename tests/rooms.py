@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""rooms.py PROGRAM SOURCE: the tables of docs/developer/rooms.md allow every include and every namespace of the tree."""
+"""rooms.py PROGRAM SOURCE: the tables of docs/developer/rooms.md allow every include and every namespace of
+the tree."""
+
 import pathlib
 import re
 import tempfile
@@ -35,9 +37,14 @@ class Rules:
     def __init__(self, text):
         of_page = tables(text)
         self.rooms = {words(row[0])[0]: set(words(row[1])) for row in of_page["Room", "May include"]}
-        self.limits = {(words(row[0])[0], words(row[1])[0]): (words(row[2]), words(row[3])) for row in of_page["From", "To"]}
+        self.limits = {
+            (words(row[0])[0], words(row[1])[0]): (words(row[2]), words(row[3]))
+            for row in of_page["From", "To"]
+        }
         self.elsewhere = {words(row[0])[0] for row in of_page["Header", "Found in"]}
-        self.namespaces = {(name, words(row[1])[0]) for row in of_page["Namespace", "In"] for name in words(row[0])}
+        self.namespaces = {
+            (name, words(row[1])[0]) for row in of_page["Namespace", "In"] for name in words(row[0])
+        }
 
     def room_of(self, path):
         """The longest room that contains the path; otherwise the folder, which has no row."""
@@ -55,23 +62,26 @@ class Rules:
         if other not in self.rooms[own]:
             return f"room {own} must not include room {other}"
         only, never = self.limits.get((own, other), ((), ()))
-        inner = target[len(other) + 1:]
+        inner = target[len(other) + 1 :]
         names = lambda entry: inner.startswith(entry) if entry.endswith("/") else inner == entry
         if any(map(names, never)) or only and not any(map(names, only)):
             return f"room {own} must not include {inner} of room {other}"
         return ""
 
-
     def is_namespace(self, path, name):
         """Whether a file may open the namespace `name`, which stands inside `tandem`."""
         *folders, file = path.split("/")
-        own = name == file.partition(".")[0] or any(name == folder or name.startswith(folder + "_") for folder in folders)
+        own = name == file.partition(".")[0] or any(
+            name == folder or name.startswith(folder + "_") for folder in folders
+        )
         return own or any(name == other and path.startswith(place) for other, place in self.namespaces)
 
 
 def files(root):
     """Paths below the root that may have includes; build folders and hidden ones are excluded."""
-    for folder in sorted(entry for entry in root.iterdir() if entry.is_dir() and not re.match(r"build|\.", entry.name)):
+    for folder in sorted(
+        entry for entry in root.iterdir() if entry.is_dir() and not re.match(r"build|\.", entry.name)
+    ):
         yield from (path for path in sorted(folder.rglob("*")) if path.suffix in ENDINGS)
 
 
@@ -84,8 +94,11 @@ def check(root):
         for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
             opened = NAMESPACE.match(line)
             inner = opened[1].split("::") if opened else []
-            errors += [f"{name}:{number}: namespace {one} is no folder or file of the path" for one in inner
-                       if one != "tandem" and not rules.is_namespace(name, one)]
+            errors += [
+                f"{name}:{number}: namespace {one} is no folder or file of the path"
+                for one in inner
+                if one != "tandem" and not rules.is_namespace(name, one)
+            ]
             include = INCLUDE.match(line)
             if not include:
                 continue
@@ -112,9 +125,19 @@ class Rooms(unittest.TestCase):
 
     def test_lists_of_rooms_elsewhere_are_complete(self):
         """What formats, analyses, compiles or digests sources names every room of the library and the program."""
-        rooms = set(Rules((SOURCE / PAGE).read_text(encoding="utf-8")).rooms) - {"python/core", "tests", "scripts"}
+        rooms = set(Rules((SOURCE / PAGE).read_text(encoding="utf-8")).rooms) - {
+            "python/core",
+            "tests",
+            "scripts",
+        }
         self.assertGreater(len(rooms), 5)
-        for name in ("scripts/check_format", "scripts/check_tidy", ".clang-tidy", "cmake/commit.cmake", "CMakeLists.txt"):
+        for name in (
+            "scripts/check_format",
+            "scripts/check_tidy",
+            ".clang-tidy",
+            "cmake/commit.cmake",
+            "CMakeLists.txt",
+        ):
             words = set(re.findall(r"[a-z_]+", (SOURCE / name).read_text(encoding="utf-8")))
             self.assertLessEqual(rooms, words, name)
 
@@ -138,8 +161,14 @@ class Mistakes(unittest.TestCase):
             page = root / PAGE
             page.parent.mkdir(parents=True)
             page.write_text((SOURCE / PAGE).read_text(encoding="utf-8"), encoding="utf-8")
-            for path in ("base/error.h", "scenes/scene.h", "scenes/motion.h", "harness/plans/cells.h", "algorithms/traversal.h",
-                         "algorithms/tiled/turns.h"):
+            for path in (
+                "base/error.h",
+                "scenes/scene.h",
+                "scenes/motion.h",
+                "harness/plans/cells.h",
+                "algorithms/traversal.h",
+                "algorithms/tiled/turns.h",
+            ):
                 (root / path).parent.mkdir(parents=True, exist_ok=True)
                 (root / path).touch()
             if many:
@@ -153,27 +182,51 @@ class Mistakes(unittest.TestCase):
         self.assertEqual(self.errors('#include "error.h"\n#include "commit.h"\n', "base/new.h"), [])
 
     def test_a_wrong_include_fails(self):
-        self.assertEqual(self.errors('\n  #  include "harness/plans/cells.h"\n'), ["geometry/new.h:2: room geometry must not include room harness"])
-        self.assertEqual(self.errors('#include "scenes/motion.h"\n', "algorithms/new.cpp"),
-                         ["algorithms/new.cpp:1: room algorithms must not include motion.h of room scenes"])
-        self.assertEqual(self.errors('#include "algorithms/tiled/turns.h"\n', "harness/new.cpp"),
-                         ["harness/new.cpp:1: room harness must not include tiled/turns.h of room algorithms"])
-        self.assertEqual(self.errors('#include "base/nothing.h"\n'), ["geometry/new.h:1: no file base/nothing.h"])
+        self.assertEqual(
+            self.errors('\n  #  include "harness/plans/cells.h"\n'),
+            ["geometry/new.h:2: room geometry must not include room harness"],
+        )
+        self.assertEqual(
+            self.errors('#include "scenes/motion.h"\n', "algorithms/new.cpp"),
+            ["algorithms/new.cpp:1: room algorithms must not include motion.h of room scenes"],
+        )
+        self.assertEqual(
+            self.errors('#include "algorithms/tiled/turns.h"\n', "harness/new.cpp"),
+            ["harness/new.cpp:1: room harness must not include tiled/turns.h of room algorithms"],
+        )
+        self.assertEqual(
+            self.errors('#include "base/nothing.h"\n'), ["geometry/new.h:1: no file base/nothing.h"]
+        )
         self.assertEqual(self.errors('#include "base/*.clh"\n'), ["geometry/new.h:1: no file base/*.clh"])
 
     def test_namespaces(self):
-        self.assertEqual(self.errors("namespace tandem::geometry {\nnamespace geometry_parts {\nnamespace new {\n"), [])
-        self.assertEqual(self.errors("namespace tandem {\nnamespace oracle {\n"),
-                         ["geometry/new.h:2: namespace oracle is no folder or file of the path"])
-        self.assertEqual(self.errors("namespace tandem::exporting {\n"), ["geometry/new.h:1: namespace exporting is no folder or file of the path"])
+        self.assertEqual(
+            self.errors("namespace tandem::geometry {\nnamespace geometry_parts {\nnamespace new {\n"), []
+        )
+        self.assertEqual(
+            self.errors("namespace tandem {\nnamespace oracle {\n"),
+            ["geometry/new.h:2: namespace oracle is no folder or file of the path"],
+        )
+        self.assertEqual(
+            self.errors("namespace tandem::exporting {\n"),
+            ["geometry/new.h:1: namespace exporting is no folder or file of the path"],
+        )
 
     def test_a_room_without_a_row_fails(self):
-        self.assertEqual(self.errors('#include "base/error.h"\n', "extra/new.cpp"), [f"extra/new.cpp:1: folder extra is no room of {PAGE}"])
-        self.assertEqual(self.errors('#include "base/error.h"\n', "python/other/new.cpp"),
-                         [f"python/other/new.cpp:1: folder python/other is no room of {PAGE}"])
+        self.assertEqual(
+            self.errors('#include "base/error.h"\n', "extra/new.cpp"),
+            [f"extra/new.cpp:1: folder extra is no room of {PAGE}"],
+        )
+        self.assertEqual(
+            self.errors('#include "base/error.h"\n', "python/other/new.cpp"),
+            [f"python/other/new.cpp:1: folder python/other is no room of {PAGE}"],
+        )
 
     def test_a_tree_with_few_includes_fails(self):
-        self.assertEqual(self.errors('#include "base/error.h"\n', many=False), [f"only 1 includes found, fewer than {LEAST}"])
+        self.assertEqual(
+            self.errors('#include "base/error.h"\n', many=False),
+            [f"only 1 includes found, fewer than {LEAST}"],
+        )
 
 
 if __name__ == "__main__":

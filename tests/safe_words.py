@@ -1,6 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""safe_words.py PROGRAM SOURCE: words of a file reach terminals, pages and tables without control characters and formulas."""
+"""safe_words.py PROGRAM SOURCE: words of a file reach terminals, pages and tables without control characters
+and formulas."""
+
 import csv
 import json
 import sys
@@ -15,7 +17,16 @@ WORDS = "=1+1\x1b[31m\x07\u202e\u2066\x9b\ntail"
 class Words(Case):
     def scene(self):
         path = self.work / "words.json"
-        path.write_text(json.dumps({"name": WORDS, "frames": 1, "meshes": {"a": {"builtin": "jack"}}, "bodies": [{"mesh": "a"}, {"mesh": "a"}]}))
+        path.write_text(
+            json.dumps(
+                {
+                    "name": WORDS,
+                    "frames": 1,
+                    "meshes": {"a": {"builtin": "jack"}},
+                    "bodies": [{"mesh": "a"}, {"mesh": "a"}],
+                }
+            )
+        )
         return path
 
     def recorded(self):
@@ -38,16 +49,24 @@ class Words(Case):
         shown = r"=1+1\x1b[31m\x07\u202e\u2066\u009b\ntail"
         records = self.recorded()
         self.assertIn(shown, self.outputs("run", self.scene(), *ONE))
-        for command in (("check", self.scene(), "--device", "host", "--algorithm", "tiled"), ("run", self.scene(), "--dry-run", "--device", "host"),
-                        ("export", self.scene(), "--glb", self.work / "w.glb"), ("view", self.scene(), "-o", self.work / "w.html"),
-                        ("export", records, "--csv"), *(("compare", records, records, "--format", form) for form in ("text", "markdown", "json"))):
+        for command in (
+            ("check", self.scene(), "--device", "host", "--algorithm", "tiled"),
+            ("run", self.scene(), "--dry-run", "--device", "host"),
+            ("export", self.scene(), "--glb", self.work / "w.glb"),
+            ("view", self.scene(), "-o", self.work / "w.html"),
+            ("export", records, "--csv"),
+            *(("compare", records, records, "--format", form) for form in ("text", "markdown", "json")),
+        ):
             self.assertIn("tail", self.outputs(*command), command)
         self.outputs("run", "pile:mesh=\x1b[31m")
         json.loads(tandem("compare", records, records, "--format", "json")[1])
 
     def test_pages_have_no_control_characters(self):
         records = self.recorded()
-        for arguments, path in ((("report", records), self.work / "r.html"), (("view", self.scene()), self.work / "v.html")):
+        for arguments, path in (
+            (("report", records), self.work / "r.html"),
+            (("view", self.scene()), self.work / "v.html"),
+        ):
             self.outputs(*arguments, "-o", path)
             page = path.read_text()
             self.assertSafe(page)
@@ -62,7 +81,9 @@ class Words(Case):
         path.write_text("".join(json.dumps(record | {"key": key}) + "\n" for key in keys))
         _, text, _ = tandem("export", path, "--csv")
         rows = list(csv.DictReader(text.splitlines()))
-        self.assertEqual([row["key"] for row in rows], ["'=1+1", "'+1", "'-1", "'@a", r"'\ta", r"'\x0da", "a=1", "'a"])
+        self.assertEqual(
+            [row["key"] for row in rows], ["'=1+1", "'+1", "'-1", "'@a", r"'\ta", r"'\x0da", "a=1", "'a"]
+        )
         self.assertEqual({row["ms"] for row in rows}, {"-1"})
         self.assertEqual({row["scene"][:6] for row in rows}, {"'=1+1\\"})
 

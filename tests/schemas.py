@@ -1,6 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""schemas.py RECORD_SCHEMA SOURCE: files that are made of the declarations of fields, and what readers take from them."""
+"""schemas.py RECORD_SCHEMA SOURCE: files that are made of the declarations of fields, and what readers take
+from them."""
+
 import csv
 import json
 import pathlib
@@ -23,13 +25,20 @@ def made(folder):
 
 def differing(root, folder):
     """The files of the tree that are not as the program makes them."""
-    return [name for name in MADE if not (root / name).is_file() or (root / name).read_bytes() != (folder / name).read_bytes()]
+    return [
+        name
+        for name in MADE
+        if not (root / name).is_file() or (root / name).read_bytes() != (folder / name).read_bytes()
+    ]
 
 
 def table_of(package, records):
-    """The header and the first row of `tandem export --csv` by the package in a folder, with the standard library only."""
+    """The header and the first row of `tandem export --csv` by the package in a folder, with the standard
+    library only."""
     code = f"import sys; sys.path.insert(0, {str(package)!r}); from tandem.commands.export_csv import main; sys.exit(main(['--records', {str(records)!r}]))"
-    text = subprocess.run([sys.executable, "-S", "-I", "-c", code], capture_output=True, text=True, check=True).stdout
+    text = subprocess.run(
+        [sys.executable, "-S", "-I", "-c", code], capture_output=True, text=True, check=True
+    ).stdout
     return list(csv.reader(text.splitlines()[:2]))
 
 
@@ -65,16 +74,33 @@ class Schemas(unittest.TestCase):
             for name in field["path"]:
                 place = place["properties"][name]
         header, row = table_of(SOURCE / "python", RECORDS)
-        self.assertEqual(header[:10], ["status", "failure", "algorithm", "preset", "device", "device_name", "driver", "scene", "scene_digest", "bodies"])
+        self.assertEqual(
+            header[:10],
+            [
+                "status",
+                "failure",
+                "algorithm",
+                "preset",
+                "device",
+                "device_name",
+                "driver",
+                "scene",
+                "scene_digest",
+                "bodies",
+            ],
+        )
         sys.path.insert(0, str(SOURCE / "python"))
         from tandem import cell_rows
+
         record = json.loads(RECORDS.read_text().splitlines()[0])
         self.assertLessEqual(set(cell_rows.FIRST_COLUMNS) - {"pairs_missed"}, set(cell_rows.row(record)))
         self.assertEqual(row[header.index("bodies")], str(record["scene"]["bodies"]))
 
     def test_a_declared_column_is_in_the_tables(self):
         package = self.folder / "python"
-        shutil.copytree(SOURCE / "python/tandem", package / "tandem", ignore=shutil.ignore_patterns("__pycache__"))
+        shutil.copytree(
+            SOURCE / "python/tandem", package / "tandem", ignore=shutil.ignore_patterns("__pycache__")
+        )
         path = package / "tandem/fields.json"
         fields = json.loads(path.read_text())
         fields["columns"].append({"column": "cores", "path": ["environment", "cores"], "type": "integer"})
@@ -83,8 +109,10 @@ class Schemas(unittest.TestCase):
         self.assertEqual(header[header.index("key") + 1], "cores")
         record = json.loads(RECORDS.read_text().splitlines()[0])
         self.assertEqual(row[header.index("cores")], str(record["environment"]["cores"]))
-        code = (f"import sys; sys.path.insert(0, {str(package)!r}); from tandem.records import read; cells = read({str(RECORDS)!r}).cells; "
-                "print(cells['cores'].dtype, cells['cores'].iloc[0])")
+        code = (
+            f"import sys; sys.path.insert(0, {str(package)!r}); from tandem.records import read; cells = read({str(RECORDS)!r}).cells; "
+            "print(cells['cores'].dtype, cells['cores'].iloc[0])"
+        )
         text = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
         self.assertEqual(text.split(), ["Int64", str(record["environment"]["cores"])])
 
@@ -94,12 +122,21 @@ class Schemas(unittest.TestCase):
         lines = docs.fields_page().splitlines()
         names = {line.split(" | ")[0].removeprefix("| ") for line in lines if line.startswith("| ")}
         self.assertLessEqual(set(schema["properties"]), names)
-        self.assertLessEqual({"scene.bodies", "devices[].clock", "kernel_times.NAME.launches", "error.truth.contacts.point"}, names)
+        self.assertLessEqual(
+            {"scene.bodies", "devices[].clock", "kernel_times.NAME.launches", "error.truth.contacts.point"},
+            names,
+        )
         self.assertIn("| environment.memory_bytes | integer | byte |  | host memory in bytes |", lines)
         self.assertIn("| scene.bodies | integer |  | bodies | number of bodies |", lines)
-        self.assertIn("| total_ns.frames | array of array of integer |  |  | [replay][frame] the parts of each sample in nanoseconds |", lines)
+        self.assertIn(
+            "| total_ns.frames | array of array of integer |  |  | [replay][frame] the parts of each sample in nanoseconds |",
+            lines,
+        )
         self.assertIn("## condition", lines)
-        schema["properties"]["scene"]["properties"]["colour"] = {"enum": ["red", "blue"], "description": "a|b"}
+        schema["properties"]["scene"]["properties"]["colour"] = {
+            "enum": ["red", "blue"],
+            "description": "a|b",
+        }
         page = docs.FieldsPage(schema, [{"column": "hue", "path": ["scene", "colour"]}]).text
         self.assertIn("| scene.colour | red, blue |  | hue | a\\|b |", page.splitlines())
 

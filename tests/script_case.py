@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Helpers shared by tests of Python's readers of records and of scripts: they run in this process where possible."""
+"""Helpers shared by tests of Python's readers of records and of scripts: they run in this process where
+possible."""
+
 import contextlib
 import importlib
 import importlib.machinery
@@ -17,12 +19,17 @@ from program import SOURCE, Case
 sys.dont_write_bytecode = True
 sys.path[:0] = [str(SOURCE / "scripts"), str(SOURCE / "python")]
 # other names are those of scripts
-MODULES = {"tables": "tandem.tables", "figures": "tandem.error_figures", "answer": "tandem.answer",
-           "schedules": "tandem.schedules"}
+MODULES = {
+    "tables": "tandem.tables",
+    "figures": "tandem.error_figures",
+    "answer": "tandem.answer",
+    "schedules": "tandem.schedules",
+}
 
 
 def loaded(name, scripts={}):
-    """The module or script, loaded once: starting Python and loading its libraries takes longer than most tests."""
+    """The module or script, loaded once: starting Python and loading its libraries takes longer than most
+    tests."""
     if name in MODULES:
         return importlib.import_module(MODULES[name])
     if name not in scripts:
@@ -47,12 +54,26 @@ def called(module, *arguments):
 def script(name, *arguments, address_space=None):
     """(exit code, standard output, lines of standard error). Runs in this process, unless the address space is
     limited or Python is not the scripts' own and may lack their libraries."""
-    if not address_space and name != "render" and os.path.realpath(sys.executable) == os.path.realpath("/usr/bin/python3"):
+    if (
+        not address_space
+        and name != "render"
+        and os.path.realpath(sys.executable) == os.path.realpath("/usr/bin/python3")
+    ):
         return called(loaded(name), *arguments)
-    limit = (lambda: resource.setrlimit(resource.RLIMIT_AS, (address_space, address_space))) if address_space else None
+    limit = (
+        (lambda: resource.setrlimit(resource.RLIMIT_AS, (address_space, address_space)))
+        if address_space
+        else None
+    )
     what = ["-B", "-m", MODULES[name]] if name in MODULES else [SOURCE / "scripts" / name]
-    done = subprocess.run(["/usr/bin/python3", *what, *map(str, arguments)], capture_output=True, text=True,
-                          preexec_fn=limit, cwd=SOURCE, env={**os.environ, "PYTHONPATH": str(SOURCE / "python")})
+    done = subprocess.run(
+        ["/usr/bin/python3", *what, *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        preexec_fn=limit,
+        cwd=SOURCE,
+        env={**os.environ, "PYTHONPATH": str(SOURCE / "python")},
+    )
     return done.returncode, done.stdout, done.stderr.splitlines()
 
 
@@ -62,7 +83,11 @@ def committed(name):
 
 def rows_of(text):
     """Cells of every line of a Markdown table."""
-    return [[cell.strip() for cell in re.split(r"(?<!\\)\|", line)[1:-1]] for line in text.splitlines() if line.startswith("| ")]
+    return [
+        [cell.strip() for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
+        for line in text.splitlines()
+        if line.startswith("| ")
+    ]
 
 
 class ScriptCase(Case):

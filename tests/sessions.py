@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""sessions.py PROGRAM SOURCE: comparisons of cells with disturbed rounds, and of cells that several sessions recorded; rates of false and missed
-changes in synthetic records of both kinds."""
+"""sessions.py PROGRAM SOURCE: comparisons of cells with disturbed rounds, and of cells that several sessions
+recorded; rates of false and missed changes in synthetic records of both kinds."""
+
 import math
 import sys
 import unittest
@@ -24,20 +25,32 @@ class Disturbed(Files):
         return self.compared([old], [new], **how)
 
     def test_rounds_and_reason_are_read(self):
-        cell, = self.read(disturbed(record("8", [5, 1, 9], [1, 1, 2], "s"), [2, 7], "quota: throttled once")).cells
-        self.assertEqual((cell.disturbed, cell.reason, cell.all_rounds, cell.disturbed_rounds), ({2}, "quota: throttled once", 2, 1))
+        (cell,) = self.read(
+            disturbed(record("8", [5, 1, 9], [1, 1, 2], "s"), [2, 7], "quota: throttled once")
+        ).cells
+        self.assertEqual(
+            (cell.disturbed, cell.reason, cell.all_rounds, cell.disturbed_rounds),
+            ({2}, "quota: throttled once", 2, 1),
+        )
         for wrong in ([{"round": "2", "why": ""}], [{"round": 2}], [3]):
-            self.refused(":1: is no record of a cell", self.write(record("8", [1], session="s") | {"conditions": {"disturbed": wrong}}))
+            self.refused(
+                ":1: is no record of a cell",
+                self.write(record("8", [1], session="s") | {"conditions": {"disturbed": wrong}}),
+            )
 
     def test_disturbed_rounds_are_left_out(self):
         """Four of ten rounds of the new record take twice as long and are disturbed."""
         old, clean = record("8", around(1, 10), session="s"), around(1, 10)
         new = record("8", [2 * ns if number < 4 else ns for number, ns in enumerate(clean)], session="t")
         cell, found = self.one(old, disturbed(new, range(4)))
-        self.assertEqual((cell.verdict, cell.undisturbed, cell.after_ns), ("not_shown", True, numpy.median(clean[4:])))
+        self.assertEqual(
+            (cell.verdict, cell.undisturbed, cell.after_ns), ("not_shown", True, numpy.median(clean[4:]))
+        )
         self.assertEqual(cell.least_p, 2 / math.comb(16, 6))
-        self.assertIn("new: 4 of 10 rounds are disturbed (busy: other processes use 1.5 of 2 cores); they are left out where they are fewer than the others",
-                      notes.notes(*found))
+        self.assertIn(
+            "new: 4 of 10 rounds are disturbed (busy: other processes use 1.5 of 2 cores); they are left out where they are fewer than the others",
+            notes.notes(*found),
+        )
 
     def test_a_change_of_undisturbed_rounds_is_found(self):
         """The disturbed rounds hide it."""
@@ -62,14 +75,19 @@ class Disturbed(Files):
     def test_disturbed_rounds_that_are_fewer(self):
         """Those of the new record are slow, the other six are 2 % slower in the median, but not all of them."""
         old = record("8", around(1, 6), session="s")
-        times = [2e7] * 5 + [ns * factor for ns, factor in zip(around(1, 6), (0.97, 1.04, 0.98, 1.04, 1.03, 1.03))]
+        times = [2e7] * 5 + [
+            ns * factor for ns, factor in zip(around(1, 6), (0.97, 1.04, 0.98, 1.04, 1.03, 1.03))
+        ]
         self.assertEqual(self.one(old, record("8", times, session="t"))[0].verdict, "slower")
         cell, _ = self.one(old, disturbed(record("8", times, session="t"), range(5)))
         self.assertEqual(cell.verdict, "disturbed")
         self.assertFalse(cell.undisturbed)
 
     def test_a_pair_is_disturbed_if_one_of_its_rounds_is(self):
-        old, new = disturbed(record("8", around(1, 12), session="s"), range(3)), disturbed(record("8", around(1, 12), session="s"), range(2, 5))
+        old, new = (
+            disturbed(record("8", around(1, 12), session="s"), range(3)),
+            disturbed(record("8", around(1, 12), session="s"), range(2, 5)),
+        )
         self.assertEqual(self.one(old, new)[0].least_p, 2 / 2**7)
 
     def test_answers_count_before_disturbance(self):
@@ -81,20 +99,31 @@ class Disturbed(Files):
 class Sessions(Files):
     def sessions(self, factors, name, **change):
         """A record of ten rounds for each factor, each of a session of its own."""
-        return [record("8", around(factor, 10), session=f"{name}{number}") | change for number, factor in enumerate(factors)]
+        return [
+            record("8", around(factor, 10), session=f"{name}{number}") | change
+            for number, factor in enumerate(factors)
+        ]
 
     def test_the_session_is_the_unit(self):
-        """Rounds of a session are alike, sessions are not: twenty rounds against twenty would tell the sides apart."""
+        """Rounds of a session are alike, sessions are not: twenty rounds against twenty would tell the sides
+        apart."""
         spread = [1, 1.1, 1.02, 1.08, 1.04]
         old, new = self.sessions(spread, "a"), self.sessions([1.01 * factor for factor in spread], "b")
         cell, found = self.compared(old, new)
-        self.assertEqual((cell.verdict, cell.paired, cell.before.sessions, len(cell.after.rounds)), ("not_shown", False, 5, 5))
+        self.assertEqual(
+            (cell.verdict, cell.paired, cell.before.sessions, len(cell.after.rounds)),
+            ("not_shown", False, 5, 5),
+        )
         self.assertEqual(cell.least_p, 2 / math.comb(10, 5))
-        self.assertEqual((cell.before.all_rounds, cell.before.samples, found[0].pooled, found[0].repeated), (50, 50, 1, 0))
+        self.assertEqual(
+            (cell.before.all_rounds, cell.before.samples, found[0].pooled, found[0].repeated), (50, 50, 1, 0)
+        )
         made = notes.notes(*found)
         self.assertIn("1 cell is compared by sessions: 5 of old and 5 of new", made)
         self.assertFalse(any("separate runs" in note for note in made))
-        self.assertEqual(self.compared(old, self.sessions([1.2 * factor for factor in spread], "b"))[0].verdict, "slower")
+        self.assertEqual(
+            self.compared(old, self.sessions([1.2 * factor for factor in spread], "b"))[0].verdict, "slower"
+        )
 
     def test_one_session_against_several(self):
         cell, found = self.compared(self.sessions([1], "a"), self.sessions([1.5] * 5, "b"))
@@ -109,21 +138,30 @@ class Sessions(Files):
         self.assertEqual(self.read(*old, *self.sessions([1], "b", environment=sources)).cells[0].sessions, 0)
         # A later record of a session continues the one before.
         again = record("8", around(2, 12), session="a0")
-        self.assertEqual([round(ns) for ns in self.read(*old, again).cells[0].times()], [round(numpy.median(around(1, 10))), round(numpy.median(around(2, 12)))])
+        self.assertEqual(
+            [round(ns) for ns in self.read(*old, again).cells[0].times()],
+            [round(numpy.median(around(1, 10))), round(numpy.median(around(2, 12)))],
+        )
 
     def test_an_interrupted_cell_counts_only_if_it_is_the_last(self):
         partial = record("8", around(1, 3), session="a0") | {"sampling": {"interrupted": True}}
         whole = record("8", around(1, 3) + around(2, 9), session="a1")
-        cell, = self.read(partial, whole).cells
+        (cell,) = self.read(partial, whole).cells
         self.assertEqual((cell.sessions, len(cell.rounds)), (0, 12))
         self.assertEqual(self.read(whole, partial).cells[0].sessions, 2)
         self.assertEqual(len(self.read(partial).cells[0].rounds), 3)
 
     def test_a_session_is_disturbed_if_half_of_its_rounds_are(self):
-        half, less = (disturbed(record("8", [3e7] * 4 + around(1, 6), session=name), range(count)) for name, count in (("a", 5), ("b", 4)))
-        cell, = self.read(half, less).cells
+        half, less = (
+            disturbed(record("8", [3e7] * 4 + around(1, 6), session=name), range(count))
+            for name, count in (("a", 5), ("b", 4))
+        )
+        (cell,) = self.read(half, less).cells
         self.assertEqual((cell.disturbed, cell.disturbed_rounds, cell.all_rounds), ({"a"}, 9, 20))
-        self.assertEqual((cell.rounds["a"], cell.rounds["b"]), (numpy.median([3e7] * 4 + around(1, 6)), numpy.median(around(1, 6))))
+        self.assertEqual(
+            (cell.rounds["a"], cell.rounds["b"]),
+            (numpy.median([3e7] * 4 + around(1, 6)), numpy.median(around(1, 6))),
+        )
 
     def test_a_change_of_disturbed_sessions_only(self):
         new = [disturbed(one, range(10)) for one in self.sessions([1.5] * 5, "b")]
@@ -131,8 +169,8 @@ class Sessions(Files):
 
 
 class Rates(unittest.TestCase):
-    """A/A comparisons of ten turns of four cells. Noise of sessions exceeds that of rounds; half of the turns meet other work, which slows one
-    of the two processes down by up to a half."""
+    """A/A comparisons of ten turns of four cells. Noise of sessions exceeds that of rounds; half of the turns
+    meet other work, which slows one of the two processes down by up to a half."""
 
     @staticmethod
     def side(random, shared, slow, change):
@@ -140,10 +178,35 @@ class Rates(unittest.TestCase):
         for key in range(4):
             own = []
             for turn, drift in enumerate(shared):
-                times = 1e7 * numpy.exp(drift + change + random.normal(0, 0.01) + random.normal(0, 0.005, 10) + slow[turn])
+                times = 1e7 * numpy.exp(
+                    drift + change + random.normal(0, 0.01) + random.normal(0, 0.005, 10) + slow[turn]
+                )
                 bad = frozenset(range(10)) if slow[turn] > 0 else frozenset()
-                own.append(cells.RecordedCell(1, 4, str(key), "ok", "", {}, {}, 1, False, f"turn {turn}", None, 10, dict(enumerate(times)), None, None, "", "",
-                                              False, disturbed=bad, all_rounds=10, disturbed_rounds=len(bad)))
+                own.append(
+                    cells.RecordedCell(
+                        1,
+                        4,
+                        str(key),
+                        "ok",
+                        "",
+                        {},
+                        {},
+                        1,
+                        False,
+                        f"turn {turn}",
+                        None,
+                        10,
+                        dict(enumerate(times)),
+                        None,
+                        None,
+                        "",
+                        "",
+                        False,
+                        disturbed=bad,
+                        all_rounds=10,
+                        disturbed_rounds=len(bad),
+                    )
+                )
             made.append(pooling.pooled(own))
         return cells.RecordedCells("", "", made, [], [], 4, 0, False)
 
@@ -152,7 +215,9 @@ class Rates(unittest.TestCase):
         for _ in range(25):
             shared = random.normal(0, 0.05, 10)
             slow = [numpy.where(random.random(10) < busy, random.uniform(0.05, 0.5, 10), 0) for _ in range(2)]
-            matched = matching.match(self.side(random, shared, slow[0], 0), self.side(random, shared, slow[1], change))
+            matched = matching.match(
+                self.side(random, shared, slow[0], 0), self.side(random, shared, slow[1], change)
+            )
             found += [cell.verdict for cell in matched.cells]
         return found
 

@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""validate_records.py [FILE.jsonl|FILE.jsonl.xz ...]: checks records against results/record.schema.json. Files with
-other names have other schemas of results/: ceilings*.jsonl (ceilings), simulation*.jsonl, sim-*, host-*, serial-*,
-parallel-* and solver-*.jsonl (simulation), steps.jsonl (paper), tried*.jsonl (tried), profile*.jsonl and profile records
-in any file (profile), lines of kind verdict in any file (verdict). Without files it checks all committed ones. Exit code 1; FILE:LINE and position of the
-first errors are printed."""
+"""validate_records.py [FILE.jsonl|FILE.jsonl.xz ...]: checks records against results/record.schema.json.
+Files with other names have other schemas of results/: ceilings*.jsonl (ceilings), simulation*.jsonl, sim-*,
+host-*, serial-*, parallel-* and solver-*.jsonl (simulation), steps.jsonl (paper), tried*.jsonl (tried),
+profile*.jsonl and profile records in any file (profile), lines of kind verdict in any file (verdict). Without
+files it checks all committed ones. Exit code 1; FILE:LINE and position of the first errors are printed."""
+
 import functools
 import json
 import lzma
@@ -17,8 +18,18 @@ import jsonschema
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SHOWN = 10
 # Schema by the beginning of a file's name; files of 'tandem paper' are named after its steps.
-KINDS = {"ceilings": "ceilings", "simulation": "simulation", "profile": "profile", "steps.": "paper", "tried": "tried", "sim-": "simulation", "host-": "simulation",
-         "serial-": "simulation", "parallel-": "simulation", "solver-": "simulation"}
+KINDS = {
+    "ceilings": "ceilings",
+    "simulation": "simulation",
+    "profile": "profile",
+    "steps.": "paper",
+    "tried": "tried",
+    "sim-": "simulation",
+    "host-": "simulation",
+    "serial-": "simulation",
+    "parallel-": "simulation",
+    "solver-": "simulation",
+}
 
 
 def no_constant(name):
@@ -33,7 +44,15 @@ def problems_of(line, kind):
         return [f"not JSON: {error}"]
     # Records of profiles and cells identify themselves, also in one file.
     if isinstance(record, dict) and kind in ("record", "profile"):
-        kind = "profile" if "profile_of" in record else "record" if "key" in record else "verdict" if record.get("kind") == "verdict" else kind
+        kind = (
+            "profile"
+            if "profile_of" in record
+            else "record"
+            if "key" in record
+            else "verdict"
+            if record.get("kind") == "verdict"
+            else kind
+        )
     return problems_of_record(record, kind)
 
 
@@ -45,7 +64,9 @@ def problems_of_record(record, kind="record"):
     except fastjsonschema.JsonSchemaException:  # reports the first error only
         pass
     found = validator_of(f"{kind}.schema.json").iter_errors(record)
-    return [f"/{'/'.join(map(str, e.absolute_path))}: {e.message[:300]}" for e in found] or ["/: not as the schema says"]
+    return [f"/{'/'.join(map(str, e.absolute_path))}: {e.message[:300]}" for e in found] or [
+        "/: not as the schema says"
+    ]
 
 
 def problems_in(path, kind):
@@ -89,12 +110,15 @@ def validator_of(name):
 
 @functools.cache
 def checker_of(kind):
-    """A function that raises at the first error of a record. It takes a tenth of the time of a validator, which finds all."""
+    """A function that raises at the first error of a record. It takes a tenth of the time of a validator,
+    which finds all."""
     return fastjsonschema.compile(schema_of(f"{kind}.schema.json"))
 
 
 def main(names):
-    files = [pathlib.Path(name) for name in names] or sorted([*(ROOT / "results").glob("**/*.jsonl"), *(ROOT / "results").glob("**/*.jsonl.xz")])
+    files = [pathlib.Path(name) for name in names] or sorted(
+        [*(ROOT / "results").glob("**/*.jsonl"), *(ROOT / "results").glob("**/*.jsonl.xz")]
+    )
     if not files:
         print("no records are committed yet")
         return 0

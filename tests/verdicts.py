@@ -1,6 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""verdicts.py GENERATOR SOURCE: verdicts of the program and of the Python package on 100 sessions with made-up times."""
+"""verdicts.py GENERATOR SOURCE: verdicts of the program and of the Python package on 100 sessions with
+made-up times."""
+
 import json
 import statistics
 import subprocess
@@ -21,7 +23,14 @@ def timed(cell, session=SESSION):
     by_round = {}
     for number, ns in zip(cell["rounds"], cell["samples"]):
         by_round.setdefault(number, []).append(ns)
-    return TimedCell(cell["key"], {number: statistics.median(own) for number, own in by_round.items()}, session, "host", False, cell["digest"])
+    return TimedCell(
+        cell["key"],
+        {number: statistics.median(own) for number, own in by_round.items()},
+        session,
+        "host",
+        False,
+        cell["digest"],
+    )
 
 
 def comparable(cells):
@@ -53,7 +62,9 @@ class Verdicts(unittest.TestCase):
         for cells, line in self.pairs():
             self.assertEqual(problems_of_record(line, "verdict"), [])
             own = computed(cells)
-            self.assertEqual([cells[one.cell].key for one in own.cells], [cell["key"] for cell in line["cells"]])
+            self.assertEqual(
+                [cells[one.cell].key for one in own.cells], [cell["key"] for cell in line["cells"]]
+            )
             self.assertEqual(own.answers_differ, line["answers_differ"])
             for one, cell in zip(own.cells, line["cells"]):
                 self.assertAlmostEqual(one.ratio.value, cell["ratio"], delta=1e-12 * cell["ratio"])
@@ -71,7 +82,14 @@ class Verdicts(unittest.TestCase):
 
     def test_sentences(self):
         sentences = [sentence for session in self.sessions for sentence in session["sentences"]]
-        for words in ("is the fastest of ", "has the lowest median of ", "(one round: no interval)", "is not told apart from it (", "found different sets of candidate pairs", "The slowest, "):
+        for words in (
+            "is the fastest of ",
+            "has the lowest median of ",
+            "(one round: no interval)",
+            "is not told apart from it (",
+            "found different sets of candidate pairs",
+            "The slowest, ",
+        ):
             self.assertTrue(any(words in sentence for sentence in sentences), words)
 
     def test_recorded_lines_are_read(self):
@@ -80,28 +98,60 @@ class Verdicts(unittest.TestCase):
             recorded.add({**line, "session": SESSION, "devices": ["host"]}, "file:1")
             read = verdict_of(cells, recorded)
             self.assertTrue(read.is_recorded)
-            self.assertEqual([(one.cell, one.has_interval, one.is_told_apart) for one in read.cells],
-                             [(one.cell, one.has_interval, one.is_told_apart) for one in computed(cells).cells])
+            self.assertEqual(
+                [(one.cell, one.has_interval, one.is_told_apart) for one in read.cells],
+                [(one.cell, one.has_interval, one.is_told_apart) for one in computed(cells).cells],
+            )
             self.assertEqual(read.leaders(), computed(cells).leaders())
             # Not of exactly these cells.
             for changed in (cells[1:], [timed_of_another_session(cells[0]), *cells[1:]], [*cells, cells[0]]):
                 self.assertFalse(verdict_of(changed, recorded).is_recorded)
 
     def test_leaders(self):
-        quick, slow, doubtful = [1.0, 1.1, 1.0, 1.1, 1.0, 1.1, 1.0], [2.0] * 7, [1.1, 1.0, 1.1, 1.0, 1.1, 1.0, 1.1]
-        cells = [TimedCell(str(i), dict(enumerate(times)), SESSION) for i, times in enumerate((slow, doubtful, quick))]
+        quick, slow, doubtful = (
+            [1.0, 1.1, 1.0, 1.1, 1.0, 1.1, 1.0],
+            [2.0] * 7,
+            [1.1, 1.0, 1.1, 1.0, 1.1, 1.0, 1.1],
+        )
+        cells = [
+            TimedCell(str(i), dict(enumerate(times)), SESSION)
+            for i, times in enumerate((slow, doubtful, quick))
+        ]
         self.assertEqual(sorted(computed(cells).leaders()), [1, 2])
-        self.assertEqual(computed([TimedCell("a", {0: 1.0}, SESSION, answer=1), TimedCell("b", {0: 2.0}, SESSION, answer=2)]).leaders(), [])
-        self.assertEqual(computed([TimedCell("a", {0: 1.0}, SESSION), TimedCell("b", {0: 2.0}, SESSION)]).leaders(), [0])
+        self.assertEqual(
+            computed(
+                [TimedCell("a", {0: 1.0}, SESSION, answer=1), TimedCell("b", {0: 2.0}, SESSION, answer=2)]
+            ).leaders(),
+            [],
+        )
+        self.assertEqual(
+            computed([TimedCell("a", {0: 1.0}, SESSION), TimedCell("b", {0: 2.0}, SESSION)]).leaders(), [0]
+        )
         self.assertEqual(computed([]).leaders(), [])
 
     def test_bad_lines_are_one_error(self):
         _, line = next(self.pairs())
         first = line["cells"][0]
-        without = [{name: value for name, value in line.items() if name != left_out} for left_out in ("session", "devices", "answers_differ", "cells")]
-        cells = [{name: value for name, value in first.items() if name != left_out} for left_out in ("key", "chosen", "ratio", "low", "high")]
-        for broken in (*without, *({**line, "cells": [cell]} for cell in (*cells, 7)), {**line, "cells": 7}, {**line, "devices": 7}):
-            with self.subTest(broken=broken), self.assertRaisesRegex(RecordError, r"^file:3: a verdict that does not match results/verdict\.schema\.json"):
+        without = [
+            {name: value for name, value in line.items() if name != left_out}
+            for left_out in ("session", "devices", "answers_differ", "cells")
+        ]
+        cells = [
+            {name: value for name, value in first.items() if name != left_out}
+            for left_out in ("key", "chosen", "ratio", "low", "high")
+        ]
+        for broken in (
+            *without,
+            *({**line, "cells": [cell]} for cell in (*cells, 7)),
+            {**line, "cells": 7},
+            {**line, "devices": 7},
+        ):
+            with (
+                self.subTest(broken=broken),
+                self.assertRaisesRegex(
+                    RecordError, r"^file:3: a verdict that does not match results/verdict\.schema\.json"
+                ),
+            ):
                 RecordedVerdicts().add(broken, "file:3")
 
 

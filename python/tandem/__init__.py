@@ -1,18 +1,20 @@
 # SPDX-License-Identifier: MIT
-"""tandem for Python: finds collisions of tetrahedral meshes on any device, and reads records of measurements as pandas frames.
+"""tandem for Python: finds collisions of tetrahedral meshes on any device, and reads records of measurements
+as pandas frames.
 
-    import tandem
-    collider = tandem.Collider(["a.msh", "b.msh"], algorithm="tiled", device="host", k=18)
-    pairs = collider.pairs([[0, 0, 0, 1, 0, 0, 0], [1, 0, 0, 1, 0, 0, 0]])   # (n, 4): body, tetrahedron, body, tetrahedron
+    import tandem collider = tandem.Collider(["a.msh", "b.msh"], algorithm="tiled", device="host", k=18) pairs
+    = collider.pairs([[0, 0, 0, 1, 0, 0, 0], [1, 0, 0, 1, 0, 0, 0]])   # (n, 4): body, tetrahedron, body,
+    tetrahedron
 
     records = tandem.read("run.jsonl")
     records.cells[["algorithm", "set_k", "ms", "ms_low", "ms_high"]]
     tandem.compare("old.jsonl", "new.jsonl")
     tandem.plot_cells(records)
 
-Collisions need the compiled part of the package and numpy. Records need pandas, but no compiler and no device. Each module is
-loaded at its first use.
+Collisions need the compiled part of the package and numpy. Records need pandas, but no compiler and no
+device. Each module is loaded at its first use.
 """
+
 import importlib
 import importlib.util
 from typing import TYPE_CHECKING
@@ -51,8 +53,10 @@ def __getattr__(name):
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     module = _MODULE_OF[name]
     if module in _NEED_COMPILED and not _COMPILED:
-        raise ImportError(f"tandem.{name} needs the compiled part of the package, which this installation does not have; "
-                          "run `pip install .` in tandem's checkout on a machine with a compiler (python/README.md)")
+        raise ImportError(
+            f"tandem.{name} needs the compiled part of the package, which this installation does not have; "
+            "run `pip install .` in tandem's checkout on a machine with a compiler (python/README.md)"
+        )
     value = getattr(importlib.import_module(f".{module}", __name__), name)
     globals()[name] = value
     return value

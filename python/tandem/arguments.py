@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Checks of a collider's arguments, as numbers of bodies, groups and settings. All raise ValueError or TypeError, whose one-line message begins
-with the name of the argument."""
+"""Checks of a collider's arguments, as numbers of bodies, groups and settings. All raise ValueError or
+TypeError, whose one-line message begins with the name of the argument."""
+
 from __future__ import annotations
 
 import operator
@@ -48,7 +49,9 @@ def flags_of(deformable, bodies):
     for i, value in enumerate(list_of(deformable, "deformable")):
         number = number_of(value, f"deformable[{i}]", "body")
         if number >= bodies:
-            raise ValueError(f"deformable[{i}]: {number} is not the number of a body; there are {bodies}, numbered from 0")
+            raise ValueError(
+                f"deformable[{i}]: {number} is not the number of a body; there are {bodies}, numbered from 0"
+            )
         flags[number] = True
     return flags
 
@@ -60,7 +63,9 @@ def bits_of_bodies(lists, what, default, bodies):
     given = list_of(lists, what)
     if len(given) != bodies:
         raise ValueError(f"{what}: {len(given)} lists for {bodies} bodies; give one per body")
-    return [default if groups is None else _bits(groups, f"{what}[{body}]") for body, groups in enumerate(given)]
+    return [
+        default if groups is None else _bits(groups, f"{what}[{body}]") for body, groups in enumerate(given)
+    ]
 
 
 def _bits(groups, what):

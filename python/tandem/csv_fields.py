@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Fields of CSV files that a spreadsheet does not take for formulas, and that a terminal does not obey."""
+
 import re
 
 from .text_lines import visible
@@ -9,7 +10,8 @@ _FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
 
 def text_field(text):
-    """A text with an apostrophe before it if a spreadsheet could take it for a formula, and with control characters as escapes."""
+    """A text with an apostrophe before it if a spreadsheet could take it for a formula, and with control
+    characters as escapes."""
     return visible(f"'{text}" if text.startswith(_FORMULA) else text)
 
 

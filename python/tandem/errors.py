@@ -7,4 +7,5 @@ class BadUse(ValueError):
 
 
 class OutputError(OSError):
-    """Output that could not be written. The message is one line: which output, and why. The command exits with 3."""
+    """Output that could not be written. The message is one line: which output, and why. The command exits
+    with 3."""

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Checks of outputs, figures without control characters, and atomic replacement of files."""
+
 import errno
 import fcntl
 import io
@@ -34,12 +35,15 @@ def _check_existing(path, inputs):
     if not os.access(path, os.W_OK):
         raise BadUse(f"{path}: cannot be written ({os.strerror(errno.EACCES)}); choose another file")
     if _has_records(path):
-        raise BadUse(f"{path}: is a file of records, which are never overwritten; choose another file for the output")
+        raise BadUse(
+            f"{path}: is a file of records, which are never overwritten; choose another file for the output"
+        )
 
 
 def check_output(path, inputs=(), suffix=""):
-    """Call this before any work. Raises BadUse for an output that is one of the inputs or a file of records, compared by device and inode, and
-    for one that cannot be written, such as a folder. `suffix`: that of a file which is made beside it and then renamed; the output has to be a regular file."""
+    """Call this before any work. Raises BadUse for an output that is one of the inputs or a file of records,
+    compared by device and inode, and for one that cannot be written, such as a folder. `suffix`: that of a
+    file which is made beside it and then renamed; the output has to be a regular file."""
     path = os.fspath(path)
     for name in (path + suffix, path):
         try:
@@ -57,7 +61,9 @@ def check_output(path, inputs=(), suffix=""):
         raise BadUse(f"{path}: is not a regular file; choose another for the output")
     folder = os.path.dirname(path) or "."
     if mode == 0 and not os.access(folder, os.W_OK | os.X_OK):
-        raise BadUse(f"{path}: cannot be written ({os.strerror(errno.EACCES if os.path.exists(folder) else errno.ENOENT)}); choose another file")
+        raise BadUse(
+            f"{path}: cannot be written ({os.strerror(errno.EACCES if os.path.exists(folder) else errno.ENOENT)}); choose another file"
+        )
 
 
 def temporary_folder():
@@ -85,7 +91,11 @@ def _locked(path, flags):
         descriptor = os.open(path, flags | os.O_CLOEXEC, 0o666)
     except OSError as problem:
         raise OutputError(f"{path}: cannot be written ({problem.strerror})") from None
-    reason = "another process writes it; wait for its end" if stat.S_ISREG(os.fstat(descriptor).st_mode) else "is no file; choose another"
+    reason = (
+        "another process writes it; wait for its end"
+        if stat.S_ISREG(os.fstat(descriptor).st_mode)
+        else "is no file; choose another"
+    )
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError:
@@ -95,7 +105,8 @@ def _locked(path, flags):
 
 
 def _remove_stale(path):
-    """Removes the file of a killed process. Refuses a link, by which another user of the folder could choose the written file."""
+    """Removes the file of a killed process. Refuses a link, by which another user of the folder could choose
+    the written file."""
     if os.path.islink(path):
         raise OutputError(f"{path}: is a link, and a file has to be made there; remove it")
     if os.path.exists(path):
@@ -105,7 +116,8 @@ def _remove_stale(path):
 
 
 def save_svg(figure, path, **options):
-    """Saves a figure of Matplotlib as SVG, with control characters of its texts as escapes. `options`: those of its savefig()."""
+    """Saves a figure of Matplotlib as SVG, with control characters of its texts as escapes. `options`: those
+    of its savefig()."""
     text = io.BytesIO()
     figure.savefig(text, format="svg", **options)
     with open(path, "w", encoding="utf-8") as file:
@@ -113,15 +125,16 @@ def save_svg(figure, path, **options):
 
 
 def replace_whole(path, data):
-    """Writes the bytes to PATH.partial and renames it, so that a kill leaves the old file or the new one. Raises OutputError."""
+    """Writes the bytes to PATH.partial and renames it, so that a kill leaves the old file or the new one.
+    Raises OutputError."""
     partial = f"{path}.partial"
     _remove_stale(partial)
     descriptor = _locked(partial, os.O_RDWR | os.O_CREAT | os.O_EXCL)
     try:
         for begin in range(0, len(data), 1 << 20):
-            piece = data[begin:begin + (1 << 20)]
+            piece = data[begin : begin + (1 << 20)]
             while piece:
-                piece = piece[os.write(descriptor, piece):]
+                piece = piece[os.write(descriptor, piece) :]
         os.fsync(descriptor)
     except OSError as problem:
         raise OutputError(f"{partial}: writing failed ({problem.strerror})") from None

@@ -1,11 +1,16 @@
 # SPDX-License-Identifier: MIT
 """Reads files that have records of several kinds."""
+
 import contextlib
 
 from . import lines
 
 SCHEMAS = {"cell": 4, "verdict": 4, "profile": 2, "simulation": 3, "ceilings": 1}
-_MARKS = {"profile_of": "profile", "key": "cell", "copy_bytes_per_s": "ceilings"}  # the first field present determines the kind
+_MARKS = {
+    "profile_of": "profile",
+    "key": "cell",
+    "copy_bytes_per_s": "ceilings",
+}  # the first field present determines the kind
 
 
 def kind_of(record):
@@ -31,12 +36,14 @@ def _checked(text, location):
         action = "use the package of the program that wrote it"
     else:
         action = "convert it with scripts/convert_records, which is installed as tandem-convert-records"
-    raise lines.RecordError(f"{location}: a record of schema {schema}, but the schema of a {kind} is {SCHEMAS[kind]}; {action}")
+    raise lines.RecordError(
+        f"{location}: a record of schema {schema}, but the schema of a {kind} is {SCHEMAS[kind]}; {action}"
+    )
 
 
 def each(path, torn):
-    """Yields ("FILE:LINE", kind, record) for every record of a file. Leaves out a last line without an end, and calls `torn` with a message
-    about it. Raises RecordError."""
+    """Yields ("FILE:LINE", kind, record) for every record of a file. Leaves out a last line without an end,
+    and calls `torn` with a message about it. Raises RecordError."""
     number = 0
     for number, (kind, record) in lines.numbered(path, torn, _checked):
         yield f"{path}:{number}", kind, record
@@ -46,10 +53,13 @@ def each(path, torn):
 
 @contextlib.contextmanager
 def fields_of(kind, location):
-    """Context manager for code that reads fields of a record: raises RecordError if they do not match its schema."""
+    """Context manager for code that reads fields of a record: raises RecordError if they do not match its
+    schema."""
     try:
         yield
     except lines.RecordError:
         raise
     except lines.FIELD_ERRORS as problem:
-        raise lines.RecordError(f"{location}: is no record of a {kind} ({problem!r}); {lines.WHAT_TO_GIVE}") from None
+        raise lines.RecordError(
+            f"{location}: is no record of a {kind} ({problem!r}); {lines.WHAT_TO_GIVE}"
+        ) from None

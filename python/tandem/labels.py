@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Short names of cells, made of the values in which they differ."""
+
 import pandas
 
 NAMES = ("algorithm", "preset", "device", "device_name", "scene", "first_frame", "last_frame")
@@ -14,8 +15,9 @@ def _texts(cells, name):
 
 
 def labels(cells, without=()):
-    """A text for each row of `cells` (from Records.cells). It has the columns of NAMES and then settings, but only those that distinguish
-    rows that the columns before do not. Leaves out columns `without`. Rows that do not differ have equal texts."""
+    """A text for each row of `cells` (from Records.cells). It has the columns of NAMES and then settings, but
+    only those that distinguish rows that the columns before do not. Leaves out columns `without`. Rows that
+    do not differ have equal texts."""
     settings = [name for name in cells.columns if name.startswith("set_")]
     parts = pandas.Series("", index=cells.index)
     groups = pandas.Series(0, index=cells.index)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Reads files of records, as 'tandem run --out' writes them: one JSON object per line."""
+
 import json
 import lzma
 import math
@@ -33,9 +34,12 @@ def _finite(text):
 
 
 def parsed(text, location, what_to_give=WHAT_TO_GIVE):
-    """The JSON value of the bytes of a line. Refuses NaN, Infinity and lone surrogates, which are not valid JSON. Raises RecordError."""
+    """The JSON value of the bytes of a line. Refuses NaN, Infinity and lone surrogates, which are not valid
+    JSON. Raises RecordError."""
     try:
-        value = json.loads(text, parse_float=_finite if _LARGE.search(text) else float, parse_constant=_finite)
+        value = json.loads(
+            text, parse_float=_finite if _LARGE.search(text) else float, parse_constant=_finite
+        )
         if _LONE_SURROGATE.search(text):
             json.dumps(value, ensure_ascii=False).encode()
     except (ValueError, RecursionError):
@@ -44,28 +48,36 @@ def parsed(text, location, what_to_give=WHAT_TO_GIVE):
 
 
 def checked_cell(record, location):
-    """The record, if it is a record of a cell and of a schema that this package reads. Raises RecordError otherwise."""
+    """The record, if it is a record of a cell and of a schema that this package reads. Raises RecordError
+    otherwise."""
     if not isinstance(record, dict) or "schema" not in record or "key" not in record:
         raise RecordError(f"{location}: is no record of a cell; {WHAT_TO_GIVE}")
     schema = record["schema"]
     if not isinstance(schema, int):
         raise RecordError(f"{location}: is no record of a cell (schema {schema!r}); {WHAT_TO_GIVE}")
     if schema < OLDEST:
-        raise RecordError(f"{location}: a record of schema {schema}; convert it to schema {NEWEST} with scripts/convert_records")
+        raise RecordError(
+            f"{location}: a record of schema {schema}; convert it to schema {NEWEST} with scripts/convert_records"
+        )
     if schema > NEWEST:
-        raise RecordError(f"{location}: a record of schema {schema}, but this package reads schemas {OLDEST} to {NEWEST}; use the package "
-                          "of the program that wrote it")
+        raise RecordError(
+            f"{location}: a record of schema {schema}, but this package reads schemas {OLDEST} to {NEWEST}; use the package "
+            "of the program that wrote it"
+        )
     _check_samples(record, location)
     return record
 
 
 def _check_samples(record, location):
-    """Raises RecordError for a time of a replay that is no finite number above 0. Other types are for the readers of the field."""
+    """Raises RecordError for a time of a replay that is no finite number above 0. Other types are for the
+    readers of the field."""
     total = record.get("total_ns")
     samples = total.get("samples") if isinstance(total, dict) else None
     for ns in samples if isinstance(samples, list) else ():
         if isinstance(ns, (int, float)) and not 0 < ns < 2**63:
-            raise RecordError(f"{location}: a sample of {str(ns)[:24]} ns is not a valid time; {RECORD_AGAIN}")
+            raise RecordError(
+                f"{location}: a sample of {str(ns)[:24]} ns is not a valid time; {RECORD_AGAIN}"
+            )
 
 
 def is_verdict(record):
@@ -79,35 +91,43 @@ def _cell(text, location):
 
 
 def numbered(path, torn, check=_cell):
-    """Yields (line number, record) for every record of a file. Leaves out a last line without an end, and calls `torn` with a message about
-    it. `check` makes a record of the bytes of a line and "FILE:LINE", or None for a line to skip; the default accepts cells and skips
-    verdicts. Raises RecordError."""
+    """Yields (line number, record) for every record of a file. Leaves out a last line without an end, and
+    calls `torn` with a message about it. `check` makes a record of the bytes of a line and "FILE:LINE", or
+    None for a line to skip; the default accepts cells and skips verdicts. Raises RecordError."""
     number = 0
     try:
         with _open(path) as file:
             for number, line in enumerate(file, 1):
                 if not line.endswith(b"\n"):
-                    torn(f"{path}:{number}: the last line has no end and is ignored; it is cut off or still being written")
+                    torn(
+                        f"{path}:{number}: the last line has no end and is ignored; it is cut off or still being written"
+                    )
                     return
                 record = check(line, f"{path}:{number}")
                 if record is not None:
                     yield number, record
     except (OSError, EOFError, lzma.LZMAError) as problem:
-        reason = "is a folder" if isinstance(problem, IsADirectoryError) else getattr(problem, "strerror", None) or problem
+        reason = (
+            "is a folder"
+            if isinstance(problem, IsADirectoryError)
+            else getattr(problem, "strerror", None) or problem
+        )
         raise RecordError(f"{path}: cannot be read ({reason}); name a file of records") from None
     if number == 0:
         raise RecordError(f"{path}: is empty; name a file of records")
 
 
 def each(path, verdict=lambda line, location: None):
-    """Yields every record of a file and "FILE:LINE". Calls `verdict` with each line of kind verdict and its place. Leaves out a last line
-    without an end with a warning. Raises RecordError."""
+    """Yields every record of a file and "FILE:LINE". Calls `verdict` with each line of kind verdict and its
+    place. Leaves out a last line without an end with a warning. Raises RecordError."""
+
     def check(text, location):
         record = parsed(text, location)
         if not is_verdict(record):
             return checked_cell(record, location)
         verdict(record, location)
         return None
+
     for number, record in numbered(path, lambda message: warnings.warn(message, stacklevel=4), check):
         yield record, f"{path}:{number}"
 
@@ -123,7 +143,8 @@ def samples_by_round(record):
 
 
 def continues(more, less):
-    """Whether rounds `more` contain all of `less` and further ones: the same run, continued after an interruption."""
+    """Whether rounds `more` contain all of `less` and further ones: the same run, continued after an
+    interruption."""
     return len(more) > len(less) > 0 and all(more.get(number) == samples for number, samples in less.items())
 
 
@@ -133,7 +154,8 @@ def is_partial(record):
 
 
 def program_of(record):
-    """What identifies the program that made a record: commit, whether its tree had changes, and digest of its sources."""
+    """What identifies the program that made a record: commit, whether its tree had changes, and digest of its
+    sources."""
     environment = record.get("environment") or {}
     return environment.get("commit") or "", environment.get("dirty"), environment.get("sources") or ""
 
@@ -141,13 +163,19 @@ def program_of(record):
 def run_of(record):
     """A value that is equal for records of one cell in one run of the program; None if the run is unknown."""
     session = record.get("session")
-    return session and (record["key"], session, tuple(device["id"] for device in record["devices"]), record.get("chosen") is not None)
+    return session and (
+        record["key"],
+        session,
+        tuple(device["id"] for device in record["devices"]),
+        record.get("chosen") is not None,
+    )
 
 
 def merged(paths, verdict=lambda line, location: None):
-    """The records of several files, each with its location and its file, and each result once. Calls `verdict` as each() does. Leaves out
-    copies, records that another record of the same key continues, and records of interrupted cells before a later one that the same program
-    made on the same devices. Raises RecordError for files that cannot be read, and for different records of one cell in one run."""
+    """The records of several files, each with its location and its file, and each result once. Calls
+    `verdict` as each() does. Leaves out copies, records that another record of the same key continues, and
+    records of interrupted cells before a later one that the same program made on the same devices. Raises
+    RecordError for files that cannot be read, and for different records of one cell in one run."""
     rows = [(record, location, path) for path in paths for record, location in each(path, verdict)]
     by_key = {}
     for number, (record, *_) in enumerate(rows):
@@ -165,14 +193,28 @@ def _superseded(rows):
     for number, record, location in rows:
         try:
             rounds[number], runs[number] = samples_by_round(record), run_of(record)
-            programs[number] = program_of(record), [device["id"] for device in record["devices"]], record.get("status") != "failed"
+            programs[number] = (
+                program_of(record),
+                [device["id"] for device in record["devices"]],
+                record.get("status") != "failed",
+            )
             if is_partial(record):
                 partial.add(number)
         except (KeyError, TypeError, AttributeError):
-            raise RecordError(f"{location}: a record that lacks fields of its schema; {WHAT_TO_GIVE}") from None
-    dropped = {number for number in rounds if any(continues(rounds[other], rounds[number]) for other in rounds)}
+            raise RecordError(
+                f"{location}: a record that lacks fields of its schema; {WHAT_TO_GIVE}"
+            ) from None
+    dropped = {
+        number for number in rounds if any(continues(rounds[other], rounds[number]) for other in rounds)
+    }
     # A later record that did not fail measures the interrupted cell again.
-    dropped |= {number for number in partial if any(other > number and program == (*programs[number][:2], True) for other, program in programs.items())}
+    dropped |= {
+        number
+        for number in partial
+        if any(
+            other > number and program == (*programs[number][:2], True) for other, program in programs.items()
+        )
+    }
     first = {}
     for number, record, location in rows:
         run = runs[number]
@@ -183,5 +225,7 @@ def _superseded(rows):
         elif record == first[run][0]:
             dropped.add(number)
         else:
-            raise RecordError(f"{first[run][1]} and {location}: different records of one cell in one run; leave one of them out")
+            raise RecordError(
+                f"{first[run][1]} and {location}: different records of one cell in one run; leave one of them out"
+            )
     return dropped

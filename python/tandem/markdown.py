@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Markdown tables, and pages with tables that are written from records."""
+
 import pathlib
 import re
 
@@ -8,14 +9,17 @@ from .errors import BadUse, OutputError
 
 def table(heads, rows, numeric=False):
     """A table as lines with their ends. `numeric`: aligns all columns except the first to the right."""
-    line = lambda cells: "| " + " | ".join(cell.replace("|", "\\|").replace("\n", " ") for cell in cells) + " |\n"
+    line = lambda cells: (
+        "| " + " | ".join(cell.replace("|", "\\|").replace("\n", " ") for cell in cells) + " |\n"
+    )
     rule = "|---" + ("|--:" if numeric else "|---") * (len(heads) - 1) + "|\n"
     return "".join([line(heads), rule, *map(line, rows)])
 
 
 def rewrite(path, mark, texts):
-    """Writes each of `texts`, a dictionary by name, between the marks <!-- MARK: NAME --> and <!-- end --> of a page. Raises BadUse if the
-    page cannot be read or has an unknown name, OutputError if it cannot be written."""
+    """Writes each of `texts`, a dictionary by name, between the marks <!-- MARK: NAME --> and <!-- end --> of
+    a page. Raises BadUse if the page cannot be read or has an unknown name, OutputError if it cannot be
+    written."""
     try:
         old = pathlib.Path(path).read_text()
     except OSError as problem:

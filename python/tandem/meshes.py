@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Makes meshes of files, of arrays, and of the objects of mesh libraries."""
+
 from __future__ import annotations
 
 import os
@@ -14,9 +15,37 @@ from .telling import warn
 
 # Types of cells by their name in meshio and by their number in VTK.
 TETRAHEDRON = ("tetra", 10)
-POINTS_LINES_FACES = ("vertex", "line", "line3", "triangle", "triangle6", "triangle7", "quad", "quad8", "quad9", "polygon",
-                      1, 2, 3, 4, 5, 6, 7, 8, 9, 21, 22, 23, 28, 30, 34, 35)
-KINDS = "a tandem.Mesh, a path, (vertices, tetrahedra), or an object with points and cells_dict (meshio, PyVista)"
+POINTS_LINES_FACES = (
+    "vertex",
+    "line",
+    "line3",
+    "triangle",
+    "triangle6",
+    "triangle7",
+    "quad",
+    "quad8",
+    "quad9",
+    "polygon",
+    1,
+    2,
+    3,
+    4,
+    5,
+    6,
+    7,
+    8,
+    9,
+    21,
+    22,
+    23,
+    28,
+    30,
+    34,
+    35,
+)
+KINDS = (
+    "a tandem.Mesh, a path, (vertices, tetrahedra), or an object with points and cells_dict (meshio, PyVista)"
+)
 
 
 def _reading(duplicates, weld, corners=False, only_tetrahedra=False):
@@ -24,7 +53,9 @@ def _reading(duplicates, weld, corners=False, only_tetrahedra=False):
         raise TypeError(f"duplicates: type {type(duplicates).__name__}; expected merge, keep or reject")
     if weld is not None and (isinstance(weld, (bool, str)) or not hasattr(weld, "__float__")):
         raise TypeError(f"weld: type {type(weld).__name__}; expected a tolerance of 0 or more, or None")
-    return _core.MeshReading(duplicates, None if weld is None else float(weld), bool(corners), bool(only_tetrahedra))
+    return _core.MeshReading(
+        duplicates, None if weld is None else float(weld), bool(corners), bool(only_tetrahedra)
+    )
 
 
 def _warned(mesh):
@@ -34,16 +65,29 @@ def _warned(mesh):
     return mesh
 
 
-def make_mesh(vertices: Any, tetrahedra: Any, name: str = "mesh", *, duplicates: str = "merge", weld: float | None = None) -> Mesh:
+def make_mesh(
+    vertices: Any,
+    tetrahedra: Any,
+    name: str = "mesh",
+    *,
+    duplicates: str = "merge",
+    weld: float | None = None,
+) -> Mesh:
     """Makes a Mesh of vertices, (n, 3) numbers, and tetrahedra, (m, 4) integers from 0; both are copied.
 
-    duplicates: handling of tetrahedra with the four vertices of an earlier one: "merge" (they keep their numbers and take no part), "keep"
+    duplicates: handling of tetrahedra with the four vertices of an earlier one: "merge" (they keep their
+    numbers and take no part), "keep"
         (they take part) or "reject" (ValueError).
-    weld: vertices at most this far apart, also along chains, count as one for boundary faces, duplicates and self_collision; coordinates and
+    weld: vertices at most this far apart, also along chains, count as one for boundary faces, duplicates and
+    self_collision; coordinates and
         numbers stay. None: no welding. 0: equal positions.
 
-    A UserWarning tells once of duplicates and of coincident vertices. Raises ValueError or TypeError, whose one-line message begins with `name` or the argument."""
-    arrays = host_array(vertices, f"{name}: vertices", 3), host_array(tetrahedra, f"{name}: tetrahedra", 4, numpy.uint32)
+    A UserWarning tells once of duplicates and of coincident vertices. Raises ValueError or TypeError, whose
+    one-line message begins with `name` or the argument."""
+    arrays = (
+        host_array(vertices, f"{name}: vertices", 3),
+        host_array(tetrahedra, f"{name}: tetrahedra", 4, numpy.uint32),
+    )
     return _warned(_core.make_mesh(*arrays, name, _reading(duplicates, weld)))
 
 
@@ -52,17 +96,32 @@ def remade(vertices, tetrahedra, name, duplicates, weld):
     return _core.make_mesh(vertices, tetrahedra, name, _core.MeshReading(duplicates, weld))
 
 
-def read_mesh(path: str | os.PathLike[str], *, duplicates: str = "merge", weld: float | None = None, corners: bool = False,
-              only_tetrahedra: bool = False) -> Mesh:
-    """Reads a tetrahedral mesh. Content and suffix determine the format: Gmsh .msh 1, 2.2, 4.0 and 4.1, Medit .mesh, TetGen .node/.ele, Vega .veg, legacy .vtk
-    and .vtu. duplicates and weld are those of make_mesh. corners: reads tetrahedra of higher order by their corners. only_tetrahedra: leaves
-    out other volume cells. Raises ValueError with FILE:LINE."""
+def read_mesh(
+    path: str | os.PathLike[str],
+    *,
+    duplicates: str = "merge",
+    weld: float | None = None,
+    corners: bool = False,
+    only_tetrahedra: bool = False,
+) -> Mesh:
+    """Reads a tetrahedral mesh. Content and suffix determine the format: Gmsh .msh 1, 2.2, 4.0 and 4.1, Medit
+    .mesh, TetGen .node/.ele, Vega .veg, legacy .vtk and .vtu. duplicates and weld are those of make_mesh.
+    corners: reads tetrahedra of higher order by their corners. only_tetrahedra: leaves out other volume
+    cells. Raises ValueError with FILE:LINE."""
     return _warned(_core.read_mesh(os.fspath(path), _reading(duplicates, weld, corners, only_tetrahedra)))
 
 
-def make_scene(specification: str, *, duplicates: str = "merge", weld: float | None = None, corners: bool = False, only_tetrahedra: bool = False) -> Scene:
-    """Makes a scene from the same text as the program: NAME, NAME:par=value,par=value, the path of a scene description (.json) or of a recording
-    (.frames). The keyword arguments are those of read_mesh, for all its meshes. Raises ValueError."""
+def make_scene(
+    specification: str,
+    *,
+    duplicates: str = "merge",
+    weld: float | None = None,
+    corners: bool = False,
+    only_tetrahedra: bool = False,
+) -> Scene:
+    """Makes a scene from the same text as the program: NAME, NAME:par=value,par=value, the path of a scene
+    description (.json) or of a recording (.frames). The keyword arguments are those of read_mesh, for all its
+    meshes. Raises ValueError."""
     scene = _core.make_scene(specification, _reading(duplicates, weld, corners, only_tetrahedra))
     for mesh in scene.meshes:
         _warned(mesh)
@@ -70,13 +129,21 @@ def make_scene(specification: str, *, duplicates: str = "merge", weld: float | N
 
 
 def mesh_of(mesh: Any, name: str, duplicates: str | None = None, weld: float | None = None) -> Mesh:
-    """A Mesh of any of KINDS, or of the bytes of a mesh file, as trimesh.interfaces.gmsh.to_volume() returns them. Points, lines and faces
-    among cells are left out. duplicates and weld are those of make_mesh; a Mesh keeps its own where they are None. Raises ValueError or
-    TypeError, whose one-line message begins with `name`, the path or the argument."""
+    """A Mesh of any of KINDS, or of the bytes of a mesh file, as trimesh.interfaces.gmsh.to_volume() returns
+    them. Points, lines and faces among cells are left out. duplicates and weld are those of make_mesh; a Mesh
+    keeps its own where they are None. Raises ValueError or TypeError, whose one-line message begins with
+    `name`, the path or the argument."""
     if isinstance(mesh, Mesh):
         if duplicates is None and weld is None:
             return mesh
-        return _warned(_core.connected(mesh, _reading(mesh.duplicates if duplicates is None else duplicates, mesh.weld if weld is None else weld)))
+        return _warned(
+            _core.connected(
+                mesh,
+                _reading(
+                    mesh.duplicates if duplicates is None else duplicates, mesh.weld if weld is None else weld
+                ),
+            )
+        )
     given = {"duplicates": "merge" if duplicates is None else duplicates, "weld": weld}
     if isinstance(mesh, (bytes, bytearray)):
         return _warned(_core.parse_mesh(bytes(mesh), name, _reading(**given)))
@@ -87,7 +154,9 @@ def mesh_of(mesh: Any, name: str, duplicates: str | None = None, weld: float | N
     if hasattr(mesh, "points") and hasattr(mesh, "cells_dict"):
         return make_mesh(mesh.points, _tetrahedra(mesh.cells_dict, name), name, **given)
     if hasattr(mesh, "faces"):
-        raise TypeError(f"{name}: type {type(mesh).__name__} has faces, not tetrahedra; fill the surface with tetrahedra (docs/user/own_data.md)")
+        raise TypeError(
+            f"{name}: type {type(mesh).__name__} has faces, not tetrahedra; fill the surface with tetrahedra (docs/user/own_data.md)"
+        )
     raise TypeError(f"{name}: type {type(mesh).__name__}; expected {KINDS}")
 
 
@@ -97,8 +166,10 @@ def _tetrahedra(cells, name):
         raise ValueError(f"{name}: has cells of type {_type_name(unusable[0])}; give linear tetrahedra only")
     found = [rows for kind, rows in cells.items() if kind in TETRAHEDRON]
     if not found:
-        raise ValueError(f"{name}: has no tetrahedra among its cells ({', '.join(map(_type_name, cells)) or 'none'}); fill the surface with tetrahedra "
-                         "(docs/user/own_data.md)")
+        raise ValueError(
+            f"{name}: has no tetrahedra among its cells ({', '.join(map(_type_name, cells)) or 'none'}); fill the surface with tetrahedra "
+            "(docs/user/own_data.md)"
+        )
     return found[0]
 
 

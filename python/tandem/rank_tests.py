@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""p-values of two-sided rank tests for tandem compare. Small tests are exact, also with ties, which scipy's exact tests do not
-support."""
+"""p-values of two-sided rank tests for tandem compare. Small tests are exact, also with ties, which scipy's
+exact tests do not support."""
+
 import functools
 import math
 import statistics
@@ -12,8 +13,8 @@ MAX_SUMS = 4096  # number of values of the smaller side times number of all valu
 
 
 def _doubled_ranks(values):
-    """Doubled ranks from 1, and the sum of t^3 - t over groups of t equal values. Ties have the mean of their ranks, which is a whole number
-    when doubled."""
+    """Doubled ranks from 1, and the sum of t^3 - t over groups of t equal values. Ties have the mean of their
+    ranks, which is a whole number when doubled."""
     _, groups, counts = numpy.unique(values, return_inverse=True, return_counts=True)
     ends = numpy.cumsum(counts)
     tied = counts.astype(float)
@@ -21,7 +22,7 @@ def _doubled_ranks(values):
 
 
 def _two_sided(counts, at):
-    below, equal, above = counts[:at].sum(), counts[at], counts[at + 1:].sum()
+    below, equal, above = counts[:at].sum(), counts[at], counts[at + 1 :].sum()
     return float(min(1.0, 2 * (min(below, above) + equal) / (below + equal + above))), True
 
 
@@ -32,7 +33,8 @@ def _approximate(total, mean, variance):
 
 @functools.lru_cache(maxsize=64)
 def _sets(ranks):
-    """Number of sets of ranks by their sum. The cache helps because, without ties, cells with equally many rounds have equal ranks."""
+    """Number of sets of ranks by their sum. The cache helps because, without ties, cells with equally many
+    rounds have equal ranks."""
     counts = numpy.zeros(sum(ranks) + 1)
     counts[0] = 1
     for rank in ranks:
@@ -73,7 +75,9 @@ def rank_sums(before, after):
     ranks, ties = _doubled_ranks(numpy.concatenate([before, after]))
     total = int(ranks[:n].sum())
     if n * (n + m) > MAX_SUMS:
-        return _approximate(total / 2, n * (n + m + 1) / 2, n * m / 12 * (n + m + 1 - ties / ((n + m) * (n + m - 1))))
+        return _approximate(
+            total / 2, n * (n + m + 1) / 2, n * m / 12 * (n + m + 1 - ties / ((n + m) * (n + m - 1)))
+        )
     return _two_sided(_sets_of(n, tuple(sorted(ranks))), total)
 
 
@@ -90,7 +94,8 @@ def least_rank_sum_p(before, after):
 
 
 def _tail(counts, most):
-    """The largest number whose lower tail in `counts` has at most the probability `most`, and this probability. If 0 has more: 0."""
+    """The largest number whose lower tail in `counts` has at most the probability `most`, and this
+    probability. If 0 has more: 0."""
     below = numpy.cumsum(counts) / counts.sum()
     at = max(0, int(numpy.searchsorted(below, most, "right")) - 1)
     return at, float(below[at])
@@ -102,8 +107,8 @@ def _approximate_tail(mean, variance, most):
 
 
 def signed_rank_tail(pairs, most):
-    """The largest sum of signed ranks, without ties, whose lower tail has at most the probability `most`, and this probability. If sum 0 has
-    more: 0 and its probability."""
+    """The largest sum of signed ranks, without ties, whose lower tail has at most the probability `most`, and
+    this probability. If sum 0 has more: 0 and its probability."""
     if pairs > MAX_PAIRS:
         return _approximate_tail(pairs * (pairs + 1) / 4, pairs * (pairs + 1) * (2 * pairs + 1) / 24, most)
     return _tail(_sets(tuple(range(1, pairs + 1))), most)
@@ -114,7 +119,7 @@ def rank_sum_tail(before, after, most):
     small = min(before, after)
     if small * (before + after) > MAX_SUMS:
         return _approximate_tail(before * after / 2, before * after * (before + after + 1) / 12, most)
-    return _tail(_sets_of(small, tuple(range(1, before + after + 1)))[small * (small + 1) // 2:], most)
+    return _tail(_sets_of(small, tuple(range(1, before + after + 1)))[small * (small + 1) // 2 :], most)
 
 
 def holm(p):
@@ -122,5 +127,7 @@ def holm(p):
     p = numpy.asarray(p, float)
     order = numpy.argsort(p, kind="stable")
     corrected = numpy.empty(len(p))
-    corrected[order] = numpy.maximum.accumulate(numpy.minimum(1.0, p[order] * (len(p) - numpy.arange(len(p)))))
+    corrected[order] = numpy.maximum.accumulate(
+        numpy.minimum(1.0, p[order] * (len(p) - numpy.arange(len(p))))
+    )
     return corrected

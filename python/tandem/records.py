@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Reads files of records as pandas frames."""
+
 import dataclasses
 import os
 import statistics
@@ -21,24 +22,30 @@ WORDS = ("status", "algorithm", "preset", "device", "device_name", "driver", "sc
 
 @dataclasses.dataclass(frozen=True)
 class Records:
-    """Tables of the same records. Column `cell` of the other tables is the index of `cells`. Times are milliseconds. Launches, waits, bytes,
-    pairs and contacts of a cell are sums over its frames.
+    """Tables of the same records. Column `cell` of the other tables is the index of `cells`. Times are
+    milliseconds. Launches, waits, bytes, pairs and contacts of a cell are sums over its frames.
 
-    Texts are those of the records: unlike `tandem export --csv`, they may begin like formulas and contain control characters.
+    Texts are those of the records: unlike `tandem export --csv`, they may begin like formulas and contain
+    control characters.
 
-    cells: one row per record of any status, in the order of the files: the columns of `tandem export --csv`, then `file` and `partial`
-        (the cell was interrupted before it had enough samples).
-        `ms` is the median time of a frame, `ms_low` to `ms_high` its 95 % interval. `stage_NAME_ms` is the time of a stage on the device,
-        or on the host for a stage without device time. `count_NAME` is a counter of work, `set_NAME` a setting.
-    samples: one row per replay: cell, sample, round, ms per frame. Rounds are independent of each other, samples of one round are not.
-    stages: one row per stage: cell, stage, device_ms and host_ms per frame with intervals, launches, waits, bytes.
-    kernels: one row per kernel: cell, kernel, device_ms per frame with its interval, launches, registers, local_bytes, spill_bytes, stack_bytes.
+    cells: one row per record of any status, in the order of the files: the columns of `tandem export --csv`,
+    then `file` and `partial`
+        (the cell was interrupted before it had enough samples). `ms` is the median time of a frame, `ms_low`
+        to `ms_high` its 95 % interval. `stage_NAME_ms` is the time of a stage on the device, or on the host
+        for a stage without device time. `count_NAME` is a counter of work, `set_NAME` a setting.
+    samples: one row per replay: cell, sample, round, ms per frame. Rounds are independent of each other,
+    samples of one round are not. stages: one row per stage: cell, stage, device_ms and host_ms per frame with
+    intervals, launches, waits, bytes. kernels: one row per kernel: cell, kernel, device_ms per frame with its
+    interval, launches, registers, local_bytes, spill_bytes, stack_bytes.
         A kernel with several compiled variants has the largest value of each.
-    frames: one row per frame: cell, frame, ms (its median over replays), body_pairs, candidate_pairs, contacts.
-    errors: one row per error of a cell that was compared with the exact truth: cell, error, median, p99, max. For false_share (fraction of
-        candidates that do not meet) and missed_share (fraction of meeting pairs that are missed), the median is the fraction.
+    frames: one row per frame: cell, frame, ms (its median over replays), body_pairs, candidate_pairs,
+    contacts. errors: one row per error of a cell that was compared with the exact truth: cell, error, median,
+    p99, max. For false_share (fraction of
+        candidates that do not meet) and missed_share (fraction of meeting pairs that are missed), the median
+        is the fraction.
     verdicts: the lines of kind verdict of the files, for verdict().
     """
+
     cells: pandas.DataFrame
     samples: pandas.DataFrame
     stages: pandas.DataFrame
@@ -48,21 +55,30 @@ class Records:
     verdicts: RecordedVerdicts = dataclasses.field(default_factory=RecordedVerdicts, repr=False)
 
     def verdict(self):
-        """The Verdict on the cells of this object with a correct answer and times, which the caller has selected to be comparable: their order,
-        ratios to the fastest, and which are told apart from it. Ranked.cell is an index of `cells`. The one that `tandem run` recorded is read
-        where it is of exactly these cells."""
+        """The Verdict on the cells of this object with a correct answer and times, which the caller has
+        selected to be comparable: their order, ratios to the fastest, and which are told apart from it.
+        Ranked.cell is an index of `cells`. The one that `tandem run` recorded is read where it is of exactly
+        these cells."""
         good = self.cells[(self.cells["status"] == "ok") & self.cells["ms"].notna()]
         samples = self.samples[self.samples["cell"].isin(good.index)]
         medians = samples.groupby(["cell", "round"], sort=True)["ms"].median()
-        timed = [TimedCell(str(cell.key), medians[number].to_dict(), str(cell.session or ""), str(cell.device))
-                 for number, cell in zip(good.index, good.itertuples())]
+        timed = [
+            TimedCell(str(cell.key), medians[number].to_dict(), str(cell.session or ""), str(cell.device))
+            for number, cell in zip(good.index, good.itertuples())
+        ]
         found = verdict_of(timed, self.verdicts)
-        return dataclasses.replace(found, cells=tuple(dataclasses.replace(one, cell=good.index[one.cell]) for one in found.cells))
+        return dataclasses.replace(
+            found, cells=tuple(dataclasses.replace(one, cell=good.index[one.cell]) for one in found.cells)
+        )
 
     def of(self, cells):
         """The records of selected cells, given by an index of `cells` or a mask of it. Keeps the numbers of cells."""
         chosen = self.cells.loc[cells]
-        return Records(chosen, *(table[table["cell"].isin(chosen.index)] for table in (getattr(self, name) for name in PARTS)), self.verdicts)
+        return Records(
+            chosen,
+            *(table[table["cell"].isin(chosen.index)] for table in (getattr(self, name) for name in PARTS)),
+            self.verdicts,
+        )
 
 
 class _Cell:
@@ -80,12 +96,22 @@ class _Cell:
         samples = total.get("samples", [])
         # Before schema 3 each sample is a round.
         rounds = total.get("rounds", range(len(samples)))
-        return [{"cell": self.number, "sample": i, "round": number, "ms": self.ms(ns)} for i, (ns, number) in enumerate(zip(samples, rounds))]
+        return [
+            {"cell": self.number, "sample": i, "round": number, "ms": self.ms(ns)}
+            for i, (ns, number) in enumerate(zip(samples, rounds))
+        ]
 
     def stages(self):
-        return [{"cell": self.number, "stage": name, **interval("device_ms", stage.get("device_ns"), self.count),
-                 **interval("host_ms", stage.get("host_ns"), self.count),
-                 **{what: stage.get(what) for what in ("launches", "waits", "bytes")}} for name, stage in (self.record["stages"] or {}).items()]
+        return [
+            {
+                "cell": self.number,
+                "stage": name,
+                **interval("device_ms", stage.get("device_ns"), self.count),
+                **interval("host_ms", stage.get("host_ns"), self.count),
+                **{what: stage.get(what) for what in ("launches", "waits", "bytes")},
+            }
+            for name, stage in (self.record["stages"] or {}).items()
+        ]
 
     def kernels(self):
         used = {}
@@ -95,8 +121,16 @@ class _Cell:
                 known = [value for value in (row.get(what), kernel.get(what)) if value is not None]
                 row[what] = max(known, default=None)
         times = self.record.get("kernel_times") or {}
-        return [{"cell": self.number, "kernel": name, **interval("device_ms", at(times, name, "device_ns"), self.count),
-                 "launches": at(times, name, "launches"), **used.get(name, {})} for name in {**times, **used}]
+        return [
+            {
+                "cell": self.number,
+                "kernel": name,
+                **interval("device_ms", at(times, name, "device_ns"), self.count),
+                "launches": at(times, name, "launches"),
+                **used.get(name, {}),
+            }
+            for name in {**times, **used}
+        ]
 
     def frames(self):
         replays = at(self.record, "total_ns", "frames") or []
@@ -105,9 +139,17 @@ class _Cell:
         for i in range(self.count):
             times = [replay[i] for replay in replays if i < len(replay)]
             median = statistics.median(times) if times else None
-            rows.append({"cell": self.number, "frame": self.record["frames"]["first"] + i, "ms": None if median is None else median / 1e6}
-                        | {name: work[name][i] if isinstance(work.get(name), list) and i < len(work[name]) else None
-                           for name in ("body_pairs", "candidate_pairs", "contacts")})
+            rows.append(
+                {
+                    "cell": self.number,
+                    "frame": self.record["frames"]["first"] + i,
+                    "ms": None if median is None else median / 1e6,
+                }
+                | {
+                    name: work[name][i] if isinstance(work.get(name), list) and i < len(work[name]) else None
+                    for name in ("body_pairs", "candidate_pairs", "contacts")
+                }
+            )
         return rows
 
     def errors(self):
@@ -117,10 +159,17 @@ class _Cell:
         missed = truth["missed_touching"] + truth["missed_overlapping"]
         meeting = truth["touching"] + truth["overlapping"] + missed
         fractions = {"false_share": (truth["false"], truth["candidates"]), "missed_share": (missed, meeting)}
-        rows = [{"cell": self.number, "error": name, "median": part / whole} for name, (part, whole) in fractions.items() if whole]
+        rows = [
+            {"cell": self.number, "error": name, "median": part / whole}
+            for name, (part, whole) in fractions.items()
+            if whole
+        ]
         contacts = truth.get("contacts") or {}
-        return rows + [{"cell": self.number, "error": name, **{which: spread.get(which) for which in SPREADS}}
-                       for name, spread in contacts.items() if isinstance(spread, dict)]
+        return rows + [
+            {"cell": self.number, "error": name, **{which: spread.get(which) for which in SPREADS}}
+            for name, spread in contacts.items()
+            if isinstance(spread, dict)
+        ]
 
 
 def _typed(column):
@@ -137,9 +186,13 @@ def _typed(column):
 
 def _cells(rows):
     names = cell_rows.columns(rows)
-    stages, counters, settings = ([name for name in names if name.startswith(group)] for group in cell_rows.GROUPS)
+    stages, counters, settings = (
+        [name for name in names if name.startswith(group)] for group in cell_rows.GROUPS
+    )
     table = pandas.DataFrame(rows, columns=[*names, "file", "partial"])
-    kinds = {name: "Int64" for name in (*WHOLE, *counters)} | {name: "float64" for name in (*cell_rows.TIMES, *stages)}
+    kinds = {name: "Int64" for name in (*WHOLE, *counters)} | {
+        name: "float64" for name in (*cell_rows.TIMES, *stages)
+    }
     kinds |= {name: FIELD_TYPES[kind] for name, kind in cell_rows.TYPES.items() if kind in FIELD_TYPES}
     kinds |= {name: "boolean" for name in TRUTHS} | {name: "category" for name in (*WORDS, "file")}
     table = table.astype(kinds)
@@ -152,14 +205,19 @@ def _cells(rows):
 
 def _table(rows, whole, words, times):
     table = pandas.DataFrame(rows, columns=["cell", *words, *whole, *times])
-    return table.astype({"cell": "int64"} | {name: "Int64" for name in whole} | {name: "category" for name in words}
-                        | {name: "float64" for name in times})
+    return table.astype(
+        {"cell": "int64"}
+        | {name: "Int64" for name in whole}
+        | {name: "category" for name in words}
+        | {name: "float64" for name in times}
+    )
 
 
 def read(files):
-    """Reads Records from one path or several (.jsonl or .jsonl.xz), in their order, such as the shards of a plan. Each result occurs once:
-    the record of an interrupted cell is left out if a later one of the same program has its key. Raises RecordError with FILE:LINE, the error and what to
-    do. A last line without an end is left out with a warning."""
+    """Reads Records from one path or several (.jsonl or .jsonl.xz), in their order, such as the shards of a
+    plan. Each result occurs once: the record of an interrupted cell is left out if a later one of the same
+    program has its key. Raises RecordError with FILE:LINE, the error and what to do. A last line without an
+    end is left out with a warning."""
     paths = [files] if isinstance(files, (str, os.PathLike)) else list(files)
     if not paths:
         raise lines.RecordError("no file is named; name files of records")
@@ -176,7 +234,9 @@ def read(files):
             except lines.RecordError:
                 raise
             except lines.FIELD_ERRORS:
-                raise lines.RecordError(f"{one[1]}: a record with a field that its schema does not allow; {lines.WHAT_TO_GIVE}") from None
+                raise lines.RecordError(
+                    f"{one[1]}: a record with a field that its schema does not allow; {lines.WHAT_TO_GIVE}"
+                ) from None
         raise
 
 
@@ -186,14 +246,33 @@ def _records(records, verdicts):
     for record, location, path in records:
         try:
             cell = _Cell(len(rows["cells"]), record)
-            rows["cells"].append(cell_rows.row(record) | {"file": os.fspath(path), "partial": bool(at(record, "sampling", "interrupted"))})
+            rows["cells"].append(
+                cell_rows.row(record)
+                | {"file": os.fspath(path), "partial": bool(at(record, "sampling", "interrupted"))}
+            )
             for name in PARTS:
                 rows[name] += getattr(cell, name)()
         except lines.FIELD_ERRORS:
-            raise lines.RecordError(f"{location}: a record that lacks fields of its schema; {lines.WHAT_TO_GIVE}") from None
+            raise lines.RecordError(
+                f"{location}: a record that lacks fields of its schema; {lines.WHAT_TO_GIVE}"
+            ) from None
     device = ("device_ms", "device_ms_low", "device_ms_high")
-    return Records(_cells(rows["cells"]), _table(rows["samples"], ("sample", "round"), (), ("ms",)),
-                   _table(rows["stages"], ("launches", "waits", "bytes"), ("stage",), (*device, "host_ms", "host_ms_low", "host_ms_high")),
-                   _table(rows["kernels"], ("launches", "registers", "local_bytes", "spill_bytes", "stack_bytes"), ("kernel",), device),
-                   _table(rows["frames"], ("frame", "body_pairs", "candidate_pairs", "contacts"), (), ("ms",)),
-                   _table(rows["errors"], (), ("error",), SPREADS), verdicts)
+    return Records(
+        _cells(rows["cells"]),
+        _table(rows["samples"], ("sample", "round"), (), ("ms",)),
+        _table(
+            rows["stages"],
+            ("launches", "waits", "bytes"),
+            ("stage",),
+            (*device, "host_ms", "host_ms_low", "host_ms_high"),
+        ),
+        _table(
+            rows["kernels"],
+            ("launches", "registers", "local_bytes", "spill_bytes", "stack_bytes"),
+            ("kernel",),
+            device,
+        ),
+        _table(rows["frames"], ("frame", "body_pairs", "candidate_pairs", "contacts"), (), ("ms",)),
+        _table(rows["errors"], (), ("error",), SPREADS),
+        verdicts,
+    )

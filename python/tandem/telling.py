@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Warnings at the line that called the package."""
+
 import sys
 import warnings
 

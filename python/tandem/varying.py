@@ -3,8 +3,9 @@
 
 
 def varying(cells):
-    """{(family, setting): {value: None, ...}} for settings with several values among the cells of a family, in order of appearance.
-    `cells`: pairs of a family and a list of settings, each a pair of a name and a value."""
+    """{(family, setting): {value: None, ...}} for settings with several values among the cells of a family,
+    in order of appearance. `cells`: pairs of a family and a list of settings, each a pair of a name and a
+    value."""
     values = {}
     for family, settings in cells:
         for name, value in settings:

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Which of several comparable cells is the fastest, and which others are told apart from it.
 
-`tandem run` records this as a line of kind verdict (results/verdict.schema.json) for the cells that it measured together. `verdict_of` reads
-that line where it is of exactly these cells. Otherwise, such as for records of several runs, it computes the verdict by the same rule."""
+`tandem run` records this as a line of kind verdict (results/verdict.schema.json) for the cells that it
+measured together. `verdict_of` reads that line where it is of exactly these cells. Otherwise, such as for
+records of several runs, it computes the verdict by the same rule."""
+
 import dataclasses
 import statistics
 
@@ -13,8 +15,10 @@ ONE = resampling.Ratio(1.0, 1.0, 1.0, 0.0)
 
 @dataclasses.dataclass(frozen=True)
 class TimedCell:
-    """What a verdict needs of a record. `session`, `devices` (ids joined by +), `key` and `chosen` (by --algorithm auto) identify it. `rounds`:
-    the median of each round in nanoseconds, by number. `answer`: equal for equal candidate pairs; None if unknown."""
+    """What a verdict needs of a record. `session`, `devices` (ids joined by +), `key` and `chosen` (by
+    --algorithm auto) identify it. `rounds`: the median of each round in nanoseconds, by number. `answer`:
+    equal for equal candidate pairs; None if unknown."""
+
     key: str
     rounds: dict
     session: str = ""
@@ -29,8 +33,9 @@ class TimedCell:
 
 @dataclasses.dataclass(frozen=True)
 class Ranked:
-    """A cell, compared with the fastest. cell: its index. ratio: its time to that of the fastest. has_interval: there are at least two rounds.
-    is_told_apart: the interval excludes 1."""
+    """A cell, compared with the fastest. cell: its index. ratio: its time to that of the fastest.
+    has_interval: there are at least two rounds. is_told_apart: the interval excludes 1."""
+
     cell: int
     ratio: resampling.Ratio = ONE
     has_interval: bool = False
@@ -42,8 +47,9 @@ class Ranked:
 
 @dataclasses.dataclass(frozen=True)
 class Verdict:
-    """cells: all, the fastest first. answers_differ: the cells found different pairs, so that none is the fastest. is_recorded: from a line
-    of kind verdict."""
+    """cells: all, the fastest first. answers_differ: the cells found different pairs, so that none is the
+    fastest. is_recorded: from a line of kind verdict."""
+
     cells: tuple = ()
     answers_differ: bool = False
     is_recorded: bool = False
@@ -52,7 +58,11 @@ class Verdict:
         """Indices of the fastest cell and of those that are not told apart from it; none if answers differ."""
         if self.answers_differ:
             return []
-        return [one.cell for one in self.cells if one is self.cells[0] or (one.has_interval and not one.is_told_apart)]
+        return [
+            one.cell
+            for one in self.cells
+            if one is self.cells[0] or (one.has_interval and not one.is_told_apart)
+        ]
 
 
 def _compared(number, base, cell):
@@ -60,7 +70,9 @@ def _compared(number, base, cell):
     if base.session and base.session == cell.session:
         common = [at for at in cell.rounds if at in base.rounds]
         if common:
-            ratio = resampling.paired_ratio([base.rounds[at] for at in common], [cell.rounds[at] for at in common])
+            ratio = resampling.paired_ratio(
+                [base.rounds[at] for at in common], [cell.rounds[at] for at in common]
+            )
             return Ranked(number, ratio, len(common) > 1)
         value = cell.median / base.median
         return Ranked(number, resampling.Ratio(value, value, value, 0.0), False)
@@ -77,7 +89,9 @@ def computed(cells):
     first, *rest = order
     is_in_pairs = len(cells[first].rounds) > 1
     # By the ratios that a sentence states: those of medians can differ in order.
-    slower = sorted((_compared(number, cells[first], cells[number]) for number in rest), key=lambda one: one.ratio.value)
+    slower = sorted(
+        (_compared(number, cells[first], cells[number]) for number in rest), key=lambda one: one.ratio.value
+    )
     ranked = [Ranked(first, ONE, is_in_pairs), *slower]
     return Verdict(tuple(ranked), len(answers) > 1)
 
@@ -96,11 +110,17 @@ class RecordedVerdicts:
         """Adds a line. Raises RecordError if it does not match its schema."""
         try:
             cells = line["cells"]
-            at = (line["session"], "+".join(line["devices"]), tuple(sorted((cell["key"], cell["chosen"]) for cell in cells)))
+            at = (
+                line["session"],
+                "+".join(line["devices"]),
+                tuple(sorted((cell["key"], cell["chosen"]) for cell in cells)),
+            )
             ranked = [(cell["key"], cell["chosen"], _recorded(cell)) for cell in cells]
             self._by_cells[at] = ranked, bool(line["answers_differ"])
         except lines.FIELD_ERRORS:
-            raise lines.RecordError(f"{location}: a verdict that does not match results/verdict.schema.json; {lines.WHAT_TO_GIVE}") from None
+            raise lines.RecordError(
+                f"{location}: a verdict that does not match results/verdict.schema.json; {lines.WHAT_TO_GIVE}"
+            ) from None
 
     def of(self, cells):
         """The recorded Verdict of exactly these TimedCells; None if there is none."""
@@ -112,15 +132,20 @@ class RecordedVerdicts:
             return None
         numbers = {(cell.key, cell.chosen): number for number, cell in enumerate(cells)}
         ranked, answers_differ = found
-        return Verdict(tuple(Ranked(numbers[key, chosen], *rest) for key, chosen, rest in ranked), answers_differ, True)
+        return Verdict(
+            tuple(Ranked(numbers[key, chosen], *rest) for key, chosen, rest in ranked), answers_differ, True
+        )
 
 
 def _recorded(cell):
     value, low, high = (cell[name] for name in ("ratio", "low", "high"))
     has_interval = low is not None
-    return resampling.Ratio(float(value), float(low if has_interval else value), float(high if has_interval else value), 0.0), has_interval
+    return resampling.Ratio(
+        float(value), float(low if has_interval else value), float(high if has_interval else value), 0.0
+    ), has_interval
 
 
 def verdict_of(cells, recorded=None):
-    """The Verdict of TimedCells with at least one round each: the recorded one if there is one of exactly these cells, otherwise computed."""
+    """The Verdict of TimedCells with at least one round each: the recorded one if there is one of exactly
+    these cells, otherwise computed."""
     return (recorded.of(cells) if recorded else None) or computed(cells)

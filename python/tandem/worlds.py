@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Numbers of bodies and arrays of several worlds. The core counts the bodies through all worlds: world * bodies of a world + body."""
+"""Numbers of bodies and arrays of several worlds. The core counts the bodies through all worlds: world *
+bodies of a world + body."""
+
 import math
 
 import numpy
@@ -9,14 +11,20 @@ from .arrays import numpy_array, refuse_mapping
 
 
 class Numbering:
-    """bodies: those of a world. worlds: None for a collider without them, whose calls do not number worlds. deformable: bodies of a world. All
-    methods raise ValueError or TypeError, whose one-line message begins with `what`."""
+    """bodies: those of a world. worlds: None for a collider without them, whose calls do not number worlds.
+    deformable: bodies of a world. All methods raise ValueError or TypeError, whose one-line message begins
+    with `what`."""
+
     def __init__(self, bodies=0, worlds=None, deformable=()):
         self.bodies = bodies
         self.worlds = None if worlds is None else integer_of(worlds, "worlds", "the number of worlds")
         if self.count < 1 or self.count * bodies >= 2**31:
-            raise ValueError(f"worlds: {worlds} with {bodies} bodies each; give 1 or more, with fewer than 2^31 bodies in all")
-        self.deformable = frozenset(world * bodies + body for world in range(self.count) for body in deformable)
+            raise ValueError(
+                f"worlds: {worlds} with {bodies} bodies each; give 1 or more, with fewer than 2^31 bodies in all"
+            )
+        self.deformable = frozenset(
+            world * bodies + body for world in range(self.count) for body in deformable
+        )
         self.key = "body" if worlds is None else "(world, body)"
 
     @property
@@ -30,7 +38,9 @@ class Numbering:
             return _below(key, self.bodies, what, "body")
         if not isinstance(key, tuple) or len(key) != 2:
             raise TypeError(f"{what}: {key!r}; expected (world, body)")
-        return _below(key[0], self.worlds, what, "world") * self.bodies + _below(key[1], self.bodies, what, "body")
+        return _below(key[0], self.worlds, what, "world") * self.bodies + _below(
+            key[1], self.bodies, what, "body"
+        )
 
     def name(self, number):
         """A body as messages name it."""
@@ -38,7 +48,11 @@ class Numbering:
 
     def in_all_worlds(self, pairs):
         """Pairs of bodies of one world, in each of them."""
-        return [(world * self.bodies + a, world * self.bodies + b) for world in range(self.count) for a, b in pairs]
+        return [
+            (world * self.bodies + a, world * self.bodies + b)
+            for world in range(self.count)
+            for a, b in pairs
+        ]
 
     def pairs_of(self, pairs, what):
         """Pairs of numbers, of pairs of bodies or with worlds of rows (world, body, body)."""

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Cases: one or two sets of boxes, and the incident pairs, which share a vertex of a mesh."""
+
 import collections
 
 import numpy
@@ -13,7 +14,8 @@ ROW = 6 * 4  # bytes of a box in a file: lo and hi in float
 
 
 class Case(collections.namedtuple("Case", "kind names boxes incident")):
-    """kind: a name; names and boxes: of the two sets, or of one whose pairs with itself count; incident: ascending keys of pairs."""
+    """kind: a name; names and boxes: of the two sets, or of one whose pairs with itself count; incident:
+    ascending keys of pairs."""
 
     def sweep(self):
         return sweep.between(*self.boxes) if len(self.boxes) == 2 else sweep.within(*self.boxes)
@@ -48,4 +50,6 @@ def of_boxes(first, second, kinds):
     """Yields the cases of these kinds of two files of boxes; `within` is of the second. Raises BadData."""
     both = boxes_in(first), boxes_in(second)
     for kind in kinds:
-        yield Case(kind, *((("first", "second"), both) if kind == "between" else (("second",), both[1:])), NO_KEYS)
+        yield Case(
+            kind, *((("first", "second"), both) if kind == "between" else (("second",), both[1:])), NO_KEYS
+        )

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Reads triangle meshes from PLY files: ASCII and binary of both byte orders, also compressed by xz."""
+
 import lzma
 import pathlib
 
@@ -7,8 +8,24 @@ import numpy
 
 from boxes.errors import BadData
 
-TYPES = {"char": "i1", "int8": "i1", "uchar": "u1", "uint8": "u1", "short": "i2", "int16": "i2", "ushort": "u2", "uint16": "u2",
-         "int": "i4", "int32": "i4", "uint": "u4", "uint32": "u4", "float": "f4", "float32": "f4", "double": "f8", "float64": "f8"}
+TYPES = {
+    "char": "i1",
+    "int8": "i1",
+    "uchar": "u1",
+    "uint8": "u1",
+    "short": "i2",
+    "int16": "i2",
+    "ushort": "u2",
+    "uint16": "u2",
+    "int": "i4",
+    "int32": "i4",
+    "uint": "u4",
+    "uint32": "u4",
+    "float": "f4",
+    "float32": "f4",
+    "double": "f8",
+    "float64": "f8",
+}
 ORDERS = {"binary_little_endian": "<", "binary_big_endian": ">", "ascii": ""}
 
 
@@ -24,8 +41,8 @@ def contents(path):
 
 
 def header(path, data):
-    """(byte order, elements, the bytes after the header). An element is (name, count, properties), and a property is (name, type, type of
-    the number of values or None)."""
+    """(byte order, elements, the bytes after the header). An element is (name, count, properties), and a
+    property is (name, type, type of the number of values or None)."""
     end = data.find(b"end_header")
     if not data.startswith(b"ply") or end < 0:
         raise BadData(f"{path}: is no PLY file")
@@ -44,11 +61,12 @@ def header(path, data):
             raise ValueError
     except (KeyError, IndexError, ValueError):
         raise BadData(f"{path}: has no valid PLY header") from None
-    return order, elements, data[data.find(b"\n", end) + 1:]
+    return order, elements, data[data.find(b"\n", end) + 1 :]
 
 
 def fields(properties, order):
-    """The numbers of an element whose lists have three values each, as fields of a row; in ASCII files all are doubles."""
+    """The numbers of an element whose lists have three values each, as fields of a row; in ASCII files all
+    are doubles."""
     number = lambda kind: order + kind if order else "f8"
     row = []
     for i, (_, kind, counted) in enumerate(properties):
@@ -60,7 +78,9 @@ def fields(properties, order):
 def triangles_only(path, rows, element):
     for i, (_, _, counted) in enumerate(element[2]):
         if counted and (wrong := numpy.flatnonzero(rows[f"count {i}"] != 3)).size:
-            raise BadData(f"{path}: {element[0]} {wrong[0]} has {rows[f'count {i}'][wrong[0]]:.0f} vertices; only triangles are read")
+            raise BadData(
+                f"{path}: {element[0]} {wrong[0]} has {rows[f'count {i}'][wrong[0]]:.0f} vertices; only triangles are read"
+            )
 
 
 def tables(path):
@@ -88,7 +108,8 @@ def tables(path):
 
 
 def read(path):
-    """(vertices, triangles) of a file: doubles of shape (n, 3) and vertex numbers of shape (m, 3). Raises BadData."""
+    """(vertices, triangles) of a file: doubles of shape (n, 3) and vertex numbers of shape (m, 3). Raises
+    BadData."""
     found = tables(path)
     if not {"vertex", "face"} <= set(found):
         raise BadData(f"{path}: has no elements vertex and face")
@@ -98,7 +119,11 @@ def read(path):
         raise BadData(f"{path}: vertices have no x, y, z")
     vertices = numpy.stack([rows[place[axis]].astype("f8") for axis in "xyz"], axis=1)
     rows, properties = found["face"]
-    lists = [f"value {i}" for i, (name, _, counted) in enumerate(properties) if counted and name in ("vertex_indices", "vertex_index")]
+    lists = [
+        f"value {i}"
+        for i, (name, _, counted) in enumerate(properties)
+        if counted and name in ("vertex_indices", "vertex_index")
+    ]
     if not lists:
         raise BadData(f"{path}: faces have no list vertex_indices")
     faces = rows[lists[0]].astype("i8")

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Pairs of boxes that the program finds."""
+
 import subprocess
 import time
 import warnings
@@ -18,7 +19,9 @@ def output(program, *arguments):
     try:
         done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, check=False)
     except OSError as error:
-        raise BadData(f"{program}: {error.strerror}; build it by scripts/build, or name it by --program") from None
+        raise BadData(
+            f"{program}: {error.strerror}; build it by scripts/build, or name it by --program"
+        ) from None
     if done.returncode:
         lines = [line for line in done.stderr.splitlines() if line.startswith("tandem: ")]
         raise BadData(lines[-1] if lines else f"{program}: exit code {done.returncode}")
@@ -40,13 +43,25 @@ class Program:
                 raise BadData(f"{self._folder / name}.vtu: {error.strerror}") from None
 
     def find(self, case, device, algorithm):
-        """(ascending keys of the pairs, seconds with reading and writing of files) of a case that is written. Raises BadData."""
+        """(ascending keys of the pairs, seconds with reading and writing of files) of a case that is written.
+        Raises BadData."""
         meshes = [word for name in case.names for word in ("--mesh", self._folder / f"{name}.vtu")]
         settings = [*SETTINGS, *(("self=on",) if len(case.boxes) == 1 else ())]
         pairs = self._folder / "pairs.csv"
         begin = time.monotonic()
-        output(self._path, "run", *meshes, "--device", device, "--algorithm", algorithm, *(word for one in settings for word in ("--set", one)),
-               *OPTIONS, "--dump-pairs", pairs)
+        output(
+            self._path,
+            "run",
+            *meshes,
+            "--device",
+            device,
+            "--algorithm",
+            algorithm,
+            *(word for one in settings for word in ("--set", one)),
+            *OPTIONS,
+            "--dump-pairs",
+            pairs,
+        )
         seconds = time.monotonic() - begin
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # no pairs

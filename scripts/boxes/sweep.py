@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: MIT
 """Pairs of boxes that overlap, independent of tandem: a sweep along x in the cells of a grid over y and z.
 
-Boxes are pairs (lo, hi) of arrays of shape (n, 3). Overlap is closed. A pair (i, j) has the key i * m + j, where m is the number of
-second boxes."""
+Boxes are pairs (lo, hi) of arrays of shape (n, 3). Overlap is closed. A pair (i, j) has the key i * m + j,
+where m is the number of second boxes."""
+
 import numpy
 
 AT_ONCE = 1 << 23  # pairs that are tested together
-MOST_CELLS = 256   # along an axis
+MOST_CELLS = 256  # along an axis
 
 
 def runs(first, last):
-    """Yields (number of the run, element) of all runs first[i] .. last[i] - 1, at most about AT_ONCE elements at a time."""
+    """Yields (number of the run, element) of all runs first[i] .. last[i] - 1, at most about AT_ONCE elements
+    at a time."""
     lengths = numpy.maximum(last - first, 0)
     ends = numpy.cumsum(lengths)
     begin = 0
@@ -31,7 +33,9 @@ class Grid:
         lo, hi = (numpy.concatenate([one[side] for one in boxes]) for side in (0, 1))
         self.origin = lo.min(0)
         extent = (hi.max(0) - self.origin)[1:]
-        self.size = numpy.maximum(numpy.maximum(extent / MOST_CELLS, 2 * (hi - lo).mean(0)[1:]), numpy.finfo("f8").tiny)
+        self.size = numpy.maximum(
+            numpy.maximum(extent / MOST_CELLS, 2 * (hi - lo).mean(0)[1:]), numpy.finfo("f8").tiny
+        )
         self.columns = self.cell(hi.max(0)[None])[0, 1] + 1
         self.x = numpy.unique(lo[:, 0])
 
@@ -56,7 +60,8 @@ class Entries:
 
 
 def later(a, b, first):
-    """Numbers of overlapping boxes whose second entry is in the run of its first: from first[i] on in b, up to the end along x of entry i."""
+    """Numbers of overlapping boxes whose second entry is in the run of its first: from first[i] on in b, up
+    to the end along x of entry i."""
     found = [numpy.empty((0, 2), "i8")]
     for entry, other in runs(first, numpy.searchsorted(b.key, a.last)):
         i, j = a.box[entry], b.box[other]
@@ -76,7 +81,9 @@ def between(a, b):
     of_a, of_b = Entries(grid, a), Entries(grid, b)
     above = later(of_a, of_b, numpy.searchsorted(of_b.key, of_a.key))
     below = later(of_b, of_a, numpy.searchsorted(of_a.key, of_b.key, "right"))
-    return numpy.sort(numpy.concatenate([above[:, 0] * len(b[0]) + above[:, 1], below[:, 1] * len(b[0]) + below[:, 0]]))
+    return numpy.sort(
+        numpy.concatenate([above[:, 0] * len(b[0]) + above[:, 1], below[:, 1] * len(b[0]) + below[:, 0]])
+    )
 
 
 def within(a):

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Swept boxes of the vertices, edges and faces of a triangle mesh between two frames, and pairs of them that share a vertex."""
+"""Swept boxes of the vertices, edges and faces of a triangle mesh between two frames, and pairs of them that
+share a vertex."""
+
 import numpy
 
 from boxes.errors import BadData
@@ -19,7 +21,9 @@ def frames(first, second):
 
 def edges_of(faces):
     """The edges of triangles, each once: pairs of vertex numbers in ascending order."""
-    return numpy.unique(numpy.sort(numpy.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1), axis=0)
+    return numpy.unique(
+        numpy.sort(numpy.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1), axis=0
+    )
 
 
 def boxes_of(vertices):
@@ -44,6 +48,8 @@ def sharing(elements):
     vertex, element = elements.ravel(), numpy.repeat(numpy.arange(len(elements)), elements.shape[1])
     order = numpy.argsort(vertex, kind="stable")
     vertex, element = vertex[order], element[order]
-    keys = [element[i] * len(elements) + element[j]
-            for i, j in runs(numpy.arange(1, len(vertex) + 1), numpy.searchsorted(vertex, vertex, "right"))]
+    keys = [
+        element[i] * len(elements) + element[j]
+        for i, j in runs(numpy.arange(1, len(vertex) + 1), numpy.searchsorted(vertex, vertex, "right"))
+    ]
     return numpy.unique(numpy.concatenate(keys))

@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Measures the overhead of calls from Python in microseconds: medians over all frames and rounds of the call, of the library's own frame
-(Session::run of C++), and of their difference. Also measures the conversion of pairs to arrays of a library (NumPy: in host memory and sorted),
-and the protocols of that library for the arrays of a frame, called from Python. Collider uses the fastest one. Only for scripted scenes."""
+"""Measures the overhead of calls from Python in microseconds: medians over all frames and rounds of the call,
+of the library's own frame (Session::run of C++), and of their difference. Also measures the conversion of
+pairs to arrays of a library (NumPy: in host memory and sorted), and the protocols of that library for the
+arrays of a frame, called from Python. Collider uses the fastest one. Only for scripted scenes."""
+
 import argparse
 import importlib
 import importlib.util
@@ -46,27 +48,45 @@ def measure(collider, frames, convert_pairs, rounds):
 
 def protocol_time(frames, rounds, protocol):
     """Microseconds of a protocol for the arrays of a frame."""
-    return microseconds([spent(lambda: [protocol(array) for array in arrays])[0] for _ in range(rounds) for arrays in frames])
+    return microseconds(
+        [spent(lambda: [protocol(array) for array in arrays])[0] for _ in range(rounds) for arrays in frames]
+    )
 
 
 def protocols(frames, rounds, stream):
     """A line of times of the protocols that the arrays support. `stream`: the argument of __dlpack__."""
     frames = [[poses, *(vertices or {}).values()] for poses, vertices in frames]
-    kinds = {"__dlpack_device__": lambda array: array.__dlpack_device__(), "__dlpack__": lambda array: array.__dlpack__(stream=stream),
-             "__cuda_array_interface__": lambda array: array.__cuda_array_interface__}
-    times = [f"{name} {protocol_time(frames, rounds, protocol):.1f} us" for name, protocol in kinds.items() if hasattr(frames[0][0], name)]
+    kinds = {
+        "__dlpack_device__": lambda array: array.__dlpack_device__(),
+        "__dlpack__": lambda array: array.__dlpack__(stream=stream),
+        "__cuda_array_interface__": lambda array: array.__cuda_array_interface__,
+    }
+    times = [
+        f"{name} {protocol_time(frames, rounds, protocol):.1f} us"
+        for name, protocol in kinds.items()
+        if hasattr(frames[0][0], name)
+    ]
     table = "with" if hasattr(type(frames[0][0]), "__dlpack_c_exchange_api__") else "without"
     return f"  {len(frames[0])} arrays, called from Python: {', '.join(times)}; {table} DLPack's table of C functions"
 
 
 def converters(library, on_gpu):
-    """Two functions: one converts a NumPy array to an array of the library, one converts the pairs of an answer."""
+    """Two functions: one converts a NumPy array to an array of the library, one converts the pairs of an
+    answer."""
     if library == "numpy":
         return lambda array: array, lambda answer: answer.pairs()
     module = importlib.import_module(library)
-    to_library, from_dlpack = {"cupy": lambda: (module.asarray, module.from_dlpack),
-                    "torch": lambda: (lambda array: module.tensor(array, device="cuda" if on_gpu else "cpu"), module.from_dlpack),
-                    "jax": lambda: (lambda array: module.block_until_ready(module.numpy.asarray(array)), module.dlpack.from_dlpack)}[library]()
+    to_library, from_dlpack = {
+        "cupy": lambda: (module.asarray, module.from_dlpack),
+        "torch": lambda: (
+            lambda array: module.tensor(array, device="cuda" if on_gpu else "cpu"),
+            module.from_dlpack,
+        ),
+        "jax": lambda: (
+            lambda array: module.block_until_ready(module.numpy.asarray(array)),
+            module.dlpack.from_dlpack,
+        ),
+    }[library]()
     if library == "jax":
         module.config.update("jax_enable_x64", True)
     return to_library, lambda answer: from_dlpack(answer.pairs(on_device=True))
@@ -87,21 +107,38 @@ def main():
     parser.add_argument("--algorithm", default="tiled")
     parser.add_argument("--frames", default="60:79", help="FIRST:LAST")
     parser.add_argument("--rounds", type=int, default=10)
-    parser.add_argument("--arrays", default="numpy", choices=(*LIBRARIES, "all"), help="library of the arrays; on a CUDA device all except NumPy's are in its memory")
+    parser.add_argument(
+        "--arrays",
+        default="numpy",
+        choices=(*LIBRARIES, "all"),
+        help="library of the arrays; on a CUDA device all except NumPy's are in its memory",
+    )
     arguments = parser.parse_args()
     on_gpu = arguments.device.startswith("cuda")
-    libraries = [library for library in LIBRARIES if importlib.util.find_spec(library)] if arguments.arrays == "all" else [arguments.arrays]
+    libraries = (
+        [library for library in LIBRARIES if importlib.util.find_spec(library)]
+        if arguments.arrays == "all"
+        else [arguments.arrays]
+    )
     try:
         first, last = map(int, arguments.frames.split(":"))
         scene = tandem.make_scene(arguments.scene)
-        collider = tandem.Collider(scene.meshes, arguments.algorithm, arguments.device, bodies=scene.bodies, deformable=scene.deformable)
+        collider = tandem.Collider(
+            scene.meshes,
+            arguments.algorithm,
+            arguments.device,
+            bodies=scene.bodies,
+            deformable=scene.deformable,
+        )
         for library in libraries:
             if library == "cupy" and not on_gpu:
                 continue  # arrays of CuPy are never in host memory
             to_library, convert_pairs = converters(library, on_gpu)
             frames = frames_of(scene, range(first, min(last + 1, scene.frame_count)), to_library)
             figures = measure(collider, frames, convert_pairs, arguments.rounds)
-            print(f"{arguments.scene} on {arguments.device}, arrays of {library}, {len(frames)} frames, {arguments.rounds} rounds: {figures}")
+            print(
+                f"{arguments.scene} on {arguments.device}, arrays of {library}, {len(frames)} frames, {arguments.rounds} rounds: {figures}"
+            )
             stream = (collider._core.queue or 1) if on_gpu and library != "numpy" else None
             print(protocols(frames, arguments.rounds, stream), flush=True)
     except (ImportError, ValueError, tandem.DeviceError) as error:

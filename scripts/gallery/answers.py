@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Which answers of records are right: digests of equal work are equal on every machine."""
+
 from tandem.report.groups import BOUNDS
 
-# Besides the bounds: settings that determine the pairs, with the value of records that do not have them. With output=contacts, the narrow phase does too.
+# Besides the bounds: settings that determine the pairs, with the value of records that do not have them. With
+# output=contacts, the narrow phase does too.
 FURTHER = {"self": "off", "motion": "none"}
 NARROW_PHASE = ("contact_rule", "decision")
 
@@ -12,19 +14,32 @@ def work_of(source):
     recorded, record = source.shown.recorded, source.record
     settings = recorded.settings
     narrow = [settings.get(name) for name in NARROW_PHASE] if settings.get("output") == "contacts" else []
-    return (source.shown.scene_digest, record["frames"]["first"], record["frames"]["last"], recorded.names["handling"],
-            *(settings.get(name, usual) for name, usual in (BOUNDS | FURTHER).items()),
-            settings.get("broad") == "sphere_boxes", *narrow)  # such boxes leave out candidates that do not meet
+    return (
+        source.shown.scene_digest,
+        record["frames"]["first"],
+        record["frames"]["last"],
+        recorded.names["handling"],
+        *(settings.get(name, usual) for name, usual in (BOUNDS | FURTHER).items()),
+        settings.get("broad") == "sphere_boxes",
+        *narrow,
+    )  # such boxes leave out candidates that do not meet
 
 
 def _known(sources):
-    """The digest by work, of committed records that were compared with the reference, otherwise of submitted ones that all agree."""
+    """The digest by work, of committed records that were compared with the reference, otherwise of submitted
+    ones that all agree."""
     found = {}
     for is_submitted in (False, True):
         digests = {}
         for source in sources:
             recorded = source.shown.recorded
-            if source.is_submitted == is_submitted and recorded.status == "ok" and source.record["agreement"] and recorded.pairs and recorded.pairs.count:
+            if (
+                source.is_submitted == is_submitted
+                and recorded.status == "ok"
+                and source.record["agreement"]
+                and recorded.pairs
+                and recorded.pairs.count
+            ):
                 digests.setdefault(work_of(source), set()).add(recorded.pairs)
         for work, own in digests.items():
             found.setdefault(work, own)
@@ -32,8 +47,9 @@ def _known(sources):
 
 
 def judge(sources):
-    """Sets the status of records with another digest than the known one to wrong. Returns places of records that nothing checks: neither their own
-    comparison with the reference nor another record of the same work."""
+    """Sets the status of records with another digest than the known one to wrong. Returns places of records
+    that nothing checks: neither their own comparison with the reference nor another record of the same
+    work."""
     known, unchecked = _known(sources), set()
     for source in sources:
         recorded = source.shown.recorded

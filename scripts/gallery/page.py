@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The HTML of the page: one table for each group of comparable cells, without scripts."""
+
 import html
 
 from tandem.report.groups import groups_of
@@ -28,7 +29,17 @@ tr.unranked td { opacity: .75 }
 <body>
 <h1>Results of tandem</h1>
 """
-COLUMNS = ("", "cell", "ms a frame [95 %]", "times the first", "candidate pairs", "conditions", "sampling", "commit", "record")
+COLUMNS = (
+    "",
+    "cell",
+    "ms a frame [95 %]",
+    "times the first",
+    "candidate pairs",
+    "conditions",
+    "sampling",
+    "commit",
+    "record",
+)
 FIELD = {name: column for column, name in enumerate(FIELDS)}
 
 
@@ -39,16 +50,32 @@ def escaped(text):
 
 def _time(cell):
     time = cell.row[FIELD["ms"]]
-    return "" if time is None or not cell.rounds else f"{digits(milliseconds(cell))} [{digits(time[1])}, {digits(time[2])}]"
+    return (
+        ""
+        if time is None or not cell.rounds
+        else f"{digits(milliseconds(cell))} [{digits(time[1])}, {digits(time[2])}]"
+    )
 
 
 def _row(source, rank, label, ratio):
     cell = source.shown
     place = f"{source.place}{', submitted' if source.is_submitted else ''}"
     pairs = cell.recorded.pairs.count if cell.recorded.pairs else ""
-    texts = [rank, label, _time(cell), ratio, f"{pairs:,}" if pairs != "" else "", cell.row[FIELD["conditions"]], cell.row[FIELD["sampling"]],
-             cell.row[FIELD["commit"]], place]
-    cells = "".join(f'<td{" class=number" if number in (2, 3, 4) else ""}>{escaped(text)}</td>' for number, text in enumerate(texts))
+    texts = [
+        rank,
+        label,
+        _time(cell),
+        ratio,
+        f"{pairs:,}" if pairs != "" else "",
+        cell.row[FIELD["conditions"]],
+        cell.row[FIELD["sampling"]],
+        cell.row[FIELD["commit"]],
+        place,
+    ]
+    cells = "".join(
+        f"<td{' class=number' if number in (2, 3, 4) else ''}>{escaped(text)}</td>"
+        for number, text in enumerate(texts)
+    )
     return f"<tr{'' if rank.isdigit() else ' class=unranked'}>{cells}</tr>\n"
 
 
@@ -62,29 +89,52 @@ def _group(group, sources):
     labels = dict(zip(group.cells, group.labels))
     rows = []
     if not group.answers_differ:
-        rows = [_row(sources[one.cell], str(rank), labels[one.cell], f"{digits(one.ratio.value)} {interval_text(one.ratio, one.has_interval)}" if rank > 1 else "")
-                for rank, one in enumerate(group.ranked, 1)]
+        rows = [
+            _row(
+                sources[one.cell],
+                str(rank),
+                labels[one.cell],
+                f"{digits(one.ratio.value)} {interval_text(one.ratio, one.has_interval)}" if rank > 1 else "",
+            )
+            for rank, one in enumerate(group.ranked, 1)
+        ]
     ranked = {one.cell for one in group.ranked} if rows else set()
     rest = [number for number in group.cells if number not in ranked and not sources[number].shown.is_older]
     states = {number: sources[number].shown.recorded.status for number in rest}
-    rows += [_row(sources[number], "answers differ" if state == "ok" else state, labels[number], "") for number, state in states.items()]
+    rows += [
+        _row(sources[number], "answers differ" if state == "ok" else state, labels[number], "")
+        for number, state in states.items()
+    ]
     sentence = group_sentences(group, [source.shown for source in sources])
-    return f"<section>\n<h2>{escaped(group.title)}</h2>\n<p>{escaped(sentence)}</p>\n{_table(rows)}</section>\n"
+    return (
+        f"<section>\n<h2>{escaped(group.title)}</h2>\n<p>{escaped(sentence)}</p>\n{_table(rows)}</section>\n"
+    )
 
 
 def html_of(sources, unchecked, refused):
-    """The page. unchecked: places of records that are shown apart and not ranked; refused: messages about submitted lines."""
+    """The page. unchecked: places of records that are shown apart and not ranked; refused: messages about
+    submitted lines."""
     compared = [source for source in sources if source.place not in unchecked]
     apart = [source for source in sources if source.place in unchecked and not source.shown.is_older]
     shown = [source.shown for source in compared]
     groups = sorted(groups_of(shown), key=lambda group: group.title)
     submitted = sum(source.is_submitted for source in sources)
-    text = HEAD + f"<p>{len(sources)} records of cells, {submitted} of them submitted. Cells of one table do the same work on the same devices.</p>\n"
+    text = (
+        HEAD
+        + f"<p>{len(sources)} records of cells, {submitted} of them submitted. Cells of one table do the same work on the same devices.</p>\n"
+    )
     text += "".join(f"<p>{escaped(sentence)}</p>\n" for sentence in summary_sentences(groups, shown))
     if refused:
-        text += "<section>\n<h2>Refused lines</h2>\n<ul>\n" + "".join(f"<li>{escaped(one)}</li>\n" for one in refused) + "</ul>\n</section>\n"
+        text += (
+            "<section>\n<h2>Refused lines</h2>\n<ul>\n"
+            + "".join(f"<li>{escaped(one)}</li>\n" for one in refused)
+            + "</ul>\n</section>\n"
+        )
     text += "".join(_group(group, compared) for group in groups)
     if apart:
         rows = [_row(source, "not compared", f"{source.shown.recorded.key}", "") for source in apart]
         text += f"<section>\n<h2>Not compared</h2>\n<p>Nothing checks these answers, so that they are not ranked.</p>\n{_table(rows)}</section>\n"
-    return text + "<footer><p>Made by scripts/results-page of tandem, under the MIT license. The page contains no work of others.</p></footer>\n</body>\n</html>\n"
+    return (
+        text
+        + "<footer><p>Made by scripts/results-page of tandem, under the MIT license. The page contains no work of others.</p></footer>\n</body>\n</html>\n"
+    )

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Reads records for the page, and refuses submitted ones that do not match the schema or the history of the project."""
+"""Reads records for the page, and refuses submitted ones that do not match the schema or the history of the
+project."""
+
 import dataclasses
 import pathlib
 import re
@@ -17,7 +19,9 @@ ABBREVIATION = re.compile(r"[0-9a-f]{7,40}\Z")
 
 @dataclasses.dataclass
 class Source:
-    """A record of a cell: what the page shows of it (`shown`), the record, its place FILE:LINE, and whether it was submitted."""
+    """A record of a cell: what the page shows of it (`shown`), the record, its place FILE:LINE, and whether
+    it was submitted."""
+
     shown: object
     record: dict
     place: str
@@ -27,15 +31,20 @@ class Source:
 @dataclasses.dataclass
 class Gathered:
     """Records of cells in the order of their files, and messages about submitted lines that are refused."""
+
     sources: list = dataclasses.field(default_factory=list)
     refused: list = dataclasses.field(default_factory=list)
 
 
 def history(root):
     """Full hashes of all commits of the checkout. Raises BadUse without git or its history."""
-    done = subprocess.run(["git", "-C", root, "rev-list", "--all", "HEAD"], capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        ["git", "-C", root, "rev-list", "--all", "HEAD"], capture_output=True, text=True, check=False
+    )
     if done.returncode != 0:
-        raise BadUse(f"{root}: commits of records cannot be checked ({one_line(done.stderr.strip(), 200)}); use a checkout with its history")
+        raise BadUse(
+            f"{root}: commits of records cannot be checked ({one_line(done.stderr.strip(), 200)}); use a checkout with its history"
+        )
     return set(done.stdout.split())
 
 
@@ -44,7 +53,8 @@ def _is_known(commit, commits):
 
 
 def objection(record, commits):
-    """Why a submitted record is refused; None if it is accepted. A wrong answer is no reason: the page shows it."""
+    """Why a submitted record is refused; None if it is accepted. A wrong answer is no reason: the page shows
+    it."""
     problems = problems_of_record(record)
     if problems:
         return f"does not match results/record.schema.json ({problems[0]})"
@@ -57,7 +67,9 @@ def objection(record, commits):
 
 
 def _check_of(gathered, commits):
-    """The check of lines.numbered: the record of a cell; None for lines of other kinds and for refused ones. `commits` is None for committed files."""
+    """The check of lines.numbered: the record of a cell; None for lines of other kinds and for refused ones.
+    `commits` is None for committed files."""
+
     def check(text, location):
         try:
             record = lines.parsed(text, location)
@@ -72,38 +84,53 @@ def _check_of(gathered, commits):
                 raise
             gathered.refused.append(str(problem))
             return None
+
     return check
 
 
 def add_file(gathered, path, name, commits=None):
-    """Adds the cells of a file to Gathered. name: how the page calls it. commits: hashes of the history, for submitted files; committed files had their review. Raises
-    RecordError for a committed file with an error, and for a file that cannot be read."""
+    """Adds the cells of a file to Gathered. name: how the page calls it. commits: hashes of the history, for
+    submitted files; committed files had their review. Raises RecordError for a committed file with an error,
+    and for a file that cannot be read."""
     torn = gathered.refused.append if commits is not None else lambda message: None
     for number, record in lines.numbered(str(path), torn, _check_of(gathered, commits)):
         try:
             shown = shown_cell(record, str(path), number, 0)
         except lines.FIELD_ERRORS as problem:
-            raise lines.RecordError(f"{path}:{number}: a record that lacks fields of its schema ({problem!r})") from None
+            raise lines.RecordError(
+                f"{path}:{number}: a record that lacks fields of its schema ({problem!r})"
+            ) from None
         if not any(record == other.record for other in gathered.sources):
             gathered.sources.append(Source(shown, record, f"{name}:{number}", commits is not None))
 
 
 def committed_files(results):
     """Files of records of results/*/ that were timed, without submitted ones."""
-    found = [path for pattern in ("*/*.jsonl", "*/*.jsonl.xz") for path in pathlib.Path(results).glob(pattern)]
-    return sorted(path for path in found if path.parent.name != "submitted" and not path.name.startswith(ERRORS_ONLY))
+    found = [
+        path for pattern in ("*/*.jsonl", "*/*.jsonl.xz") for path in pathlib.Path(results).glob(pattern)
+    ]
+    return sorted(
+        path for path in found if path.parent.name != "submitted" and not path.name.startswith(ERRORS_ONLY)
+    )
 
 
 def submitted_files(results):
-    return sorted(path for pattern in ("*.jsonl", "*.jsonl.xz") for path in (pathlib.Path(results) / "submitted").glob(pattern))
+    return sorted(
+        path
+        for pattern in ("*.jsonl", "*.jsonl.xz")
+        for path in (pathlib.Path(results) / "submitted").glob(pattern)
+    )
 
 
 def mark_older(sources):
-    """In one file, the last record of a key that is ok counts. Records of several files all count: they are of several people."""
+    """In one file, the last record of a key that is ok counts. Records of several files all count: they are
+    of several people."""
     newest = {}
     for source in sources:
         key = source.place.rpartition(":")[0], source.shown.recorded.key
         if key not in newest or source.shown.recorded.status == "ok":
             newest[key] = source
     for source in sources:
-        source.shown.is_older = newest[source.place.rpartition(":")[0], source.shown.recorded.key] is not source
+        source.shown.is_older = (
+            newest[source.place.rpartition(":")[0], source.shown.recorded.key] is not source
+        )

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Texts of several lines, and where in a file each letter of them is; findings."""
+
 import bisect
 import collections
 import itertools
@@ -8,8 +9,9 @@ Finding = collections.namedtuple("Finding", "rule path line what")
 
 
 class Block:
-    """Lines that are read as one text: a paragraph, a list item, a comment. kind: prose, heading, table or code in a page, else "".
-    lines: (number, text) of each. `text` has them joined by blanks, and `starts` where each begins in it."""
+    """Lines that are read as one text: a paragraph, a list item, a comment. kind: prose, heading, table or
+    code in a page, else "". lines: (number, text) of each. `text` has them joined by blanks, and `starts`
+    where each begins in it."""
 
     def __init__(self, kind, lines):
         self.kind = kind
@@ -23,10 +25,13 @@ class Block:
 
 
 def blanked(pattern, text, fill=" "):
-    """The text with `fill` in place of every letter that matches but the first group's, so that positions stay."""
+    """The text with `fill` in place of every letter that matches but the first group's, so that positions
+    stay."""
+
     def blank(match):
         if not match.re.groups or match[1] is None:
             return fill * len(match[0])
         before, behind = match.start(1) - match.start(), match.end() - match.end(1)
         return fill * before + match[1] + fill * behind
+
     return pattern.sub(blank, text)

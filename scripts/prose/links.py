@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Links of a page that lead nowhere: files that are not there, anchors that no heading has."""
+
 import re
 import urllib.parse
 

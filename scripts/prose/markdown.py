@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Pages (Markdown) as blocks, and what of a block is prose."""
+
 import re
 
 from prose.blocks import Block, blanked
@@ -84,13 +85,13 @@ class _Reader:
             if item:
                 self.end()
                 self._indent = len(item[1])
-            text = line[item.end():] if item else line
+            text = line[item.end() :] if item else line
             self._add("definition" if DEFINITION.match(line) else "prose", number, QUOTE.sub("", text))
 
 
 def blocks(text):
-    """Blocks of a page in order: kind prose (a paragraph or a list item), heading, table, definition (of a link), code (a line each).
-    HTML comments and what stands before a page (---) are left out."""
+    """Blocks of a page in order: kind prose (a paragraph or a list item), heading, table, definition (of a
+    link), code (a line each). HTML comments and what stands before a page (---) are left out."""
     keep_lines = lambda match: re.sub(r"[^\n]", "", match[0])
     reader = _Reader()
     for number, line in enumerate(FRONT_MATTER.sub(keep_lines, COMMENT.sub(keep_lines, text)).split("\n"), 1):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Rules of a page: mean and longest sentence, size, sentences that begin with "Of"."""
+
 import statistics
 
 from prose.blocks import Finding
@@ -36,20 +37,29 @@ def mean(page):
     lengths = [len(own) for _, own, _ in _sentences(page)]
     limit = MEAN_OF_README if page.path == "README.md" else MEAN
     if lengths and statistics.mean(lengths) > limit:
-        yield Finding("mean", page.path, 1, f"mean sentence of {statistics.mean(lengths):.1f} words in {len(lengths)} sentences (at most {limit})")
+        yield Finding(
+            "mean",
+            page.path,
+            1,
+            f"mean sentence of {statistics.mean(lengths):.1f} words in {len(lengths)} sentences (at most {limit})",
+        )
 
 
 def long(page):
     """Findings of sentences that are too long."""
     for line, own, begin in _sentences(page):
         if len(own) > LONGEST:
-            yield Finding("long", page.path, line, f"sentence of {len(own)} words (at most {LONGEST}): {begin}")
+            yield Finding(
+                "long", page.path, line, f"sentence of {len(own)} words (at most {LONGEST}): {begin}"
+            )
 
 
 def size(page):
     """Findings of a page that is too long."""
     lines, count = len(page.text.splitlines()), len(page.text.split())
-    most_lines, most_words = README if page.path == "README.md" else ROOM_README if is_room_readme(page.path) else PAGE
+    most_lines, most_words = (
+        README if page.path == "README.md" else ROOM_README if is_room_readme(page.path) else PAGE
+    )
     if lines > most_lines:
         yield Finding("size", page.path, 1, f"{lines} lines (at most {most_lines})")
     if count > most_words:
@@ -62,4 +72,9 @@ def of(page):
         if block.kind in ("prose", "heading"):
             for position, own in placed(plain(block.text)):
                 if own[0].strip("*_([\"'") == "Of":
-                    yield Finding("of", page.path, block.line(position), f"a sentence begins with Of: {beginning(block.text[position:])}")
+                    yield Finding(
+                        "of",
+                        page.path,
+                        block.line(position),
+                        f"a sentence begins with Of: {beginning(block.text[position:])}",
+                    )

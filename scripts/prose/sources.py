@@ -1,17 +1,25 @@
 # SPDX-License-Identifier: MIT
 """Sources as comments, identifiers and messages (strings), by their tokens."""
+
 import bisect
 import re
 
 from prose.blocks import Block, Finding
 
 STRING = r""""(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'"""
-TRIPLE = r'''"{3}(?:\\.|[^\\])*?"{3}|'{3}(?:\\.|[^\\])*?'{3}'''
+TRIPLE = r""""{3}(?:\\.|[^\\])*?"{3}|'{3}(?:\\.|[^\\])*?'{3}"""
 NAME = r"(?P<name>[A-Za-z_]\w*)"
-# Numbers stand before strings, since their digits may be parted by quotes. The value of #define is read on its own.
-C_LIKE = re.compile(r"(?P<comment>//(?:\\\n|[^\n])*|/\*.*?\*/)|(?P<number>#\s*include[^\n]*|\.?\d(?:'?[\w.])*)"
-                    rf'|(?P<text>R"(?P<mark>[^(\s]*)\(.*?\)(?P=mark)"|{STRING}|`(?:\\.|[^`\\])*`)|{NAME}', re.DOTALL)
-PYTHON = re.compile(rf"(?P<comment>#[^\n]*)|(?P<number>\.?\d[\w.]*)|[rRbBfFuU]{{0,2}}(?P<text>{TRIPLE}|{STRING})|{NAME}", re.DOTALL)
+# Numbers stand before strings, since their digits may be parted by quotes. The value of #define is read on
+# its own.
+C_LIKE = re.compile(
+    r"(?P<comment>//(?:\\\n|[^\n])*|/\*.*?\*/)|(?P<number>#\s*include[^\n]*|\.?\d(?:'?[\w.])*)"
+    rf'|(?P<text>R"(?P<mark>[^(\s]*)\(.*?\)(?P=mark)"|{STRING}|`(?:\\.|[^`\\])*`)|{NAME}',
+    re.DOTALL,
+)
+PYTHON = re.compile(
+    rf"(?P<comment>#[^\n]*)|(?P<number>\.?\d[\w.]*)|[rRbBfFuU]{{0,2}}(?P<text>{TRIPLE}|{STRING})|{NAME}",
+    re.DOTALL,
+)
 HASHED = re.compile(r"(?m)(?:^|(?<=\s))(?P<comment>#(?!!)[^\n]*)")
 
 MARKER = re.compile(r"""^\s*(?:///?<?|/\*\*?<?|\*(?!/)|#+|"{3}|'{3})?\s?""")
@@ -31,7 +39,8 @@ def language(path, text):
 
 
 class Source:
-    """A file's comments and messages, as blocks, and of each identifier the line of the first and how many there are."""
+    """A file's comments and messages, as blocks, and of each identifier the line of the first and how many
+    there are."""
 
     def __init__(self, path, text):
         self.path, self.comments, self.messages, self.names = path, [], [], {}
@@ -67,11 +76,13 @@ class Source:
         """Whether a text with three quotes is a statement of its own."""
         if match["text"][:3] not in ('"""', "'''"):
             return False
-        before = self._text[self._starts[self._line(match.start()) - 1]:match.start()]
-        return not before.strip() and not self._text[:match.start()].rstrip().endswith(("(", ",", "=", "[", "{", "+"))
+        before = self._text[self._starts[self._line(match.start()) - 1] : match.start()]
+        return not before.strip() and not self._text[: match.start()].rstrip().endswith(
+            ("(", ",", "=", "[", "{", "+")
+        )
 
     def _add_comment(self, match):
-        between = self._text[self._end:match.start()]
+        between = self._text[self._end : match.start()]
         if between.strip() or between.count("\n") != 1:
             self._end_comment()
         self._gathered += [(number, MARKER.sub("", line, count=1)) for number, line in self._lines(match)]
@@ -88,4 +99,9 @@ def of(source):
     for comment in source.comments:
         begun = [start for start in comment.starts if comment.text.startswith("Of ", start)]
         for at in sorted({*begun, *(match.end() for match in SENTENCE_OF.finditer(comment.text))}):
-            yield Finding("of", source.path, comment.line(at), f"a comment begins with Of: {comment.text[at:at + 40].strip()} ...")
+            yield Finding(
+                "of",
+                source.path,
+                comment.line(at),
+                f"a comment begins with Of: {comment.text[at : at + 40].strip()} ...",
+            )

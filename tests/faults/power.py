@@ -1,9 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""power.py PROGRAM SOURCE: loss of power after every call that changes a file. Changes that are not yet synced are
-on the disk completely, not at all, all but one, only one, or with half of the last write or zeros in its place.
-The command is resumed on every such disk: everything promised before is there, and the final result equals that
-without the loss. PRELOAD names the library that logs the calls (power.cpp)."""
+"""power.py PROGRAM SOURCE: loss of power after every call that changes a file. Changes that are not yet
+synced are on the disk completely, not at all, all but one, only one, or with half of the last write or zeros
+in its place. The command is resumed on every such disk: everything promised before is there, and the final
+result equals that without the loss. PRELOAD names the library that logs the calls (power.cpp)."""
+
 import collections
 import json
 import os
@@ -20,12 +21,16 @@ from program import LONG, PROGRAM, Case, sets, tandem, tried
 PRELOAD = str(pathlib.Path(os.environ["PRELOAD"]).resolve())  # children run in other folders
 SHORT = 12  # disks per command in the short form, a random selection
 CAPACITIES = sets({name: 4096 for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity")})
-Change = collections.namedtuple("Change", "of what")  # `of`: a file's number or a folder; what: a function of the disk
-State = collections.namedtuple("State", "names files")  # path: number of a file, None for a folder; number: bytes
+Change = collections.namedtuple(
+    "Change", "of what"
+)  # `of`: a file's number or a folder; what: a function of the disk
+State = collections.namedtuple(
+    "State", "names files"
+)  # path: number of a file, None for a folder; number: bytes
 
 
 def written(old, at, data):
-    return old.ljust(at, b"\0")[:at] + data + old[at + len(data):]
+    return old.ljust(at, b"\0")[:at] + data + old[at + len(data) :]
 
 
 def folder_of(path):
@@ -33,9 +38,9 @@ def folder_of(path):
 
 
 class Disk:
-    """The certain content, and the pending changes in order. Syncing a file makes its content certain, syncing a
-    folder its names. A file's name is certain only after its folder is synced: POSIX leaves this open, and file
-    systems differ."""
+    """The certain content, and the pending changes in order. Syncing a file makes its content certain,
+    syncing a folder its names. A file's name is certain only after its folder is synced: POSIX leaves this
+    open, and file systems differ."""
 
     def __init__(self, folder):
         self.certain, self.pending, self.names = State({}, {}), [], {}
@@ -70,7 +75,10 @@ class Disk:
     def rename(self, source, target):
         number = self.names.pop(source)
         self.names[target] = number
-        self.change(folder_of(target), lambda state: (state.names.pop(source, None), state.names.__setitem__(target, number)))
+        self.change(
+            folder_of(target),
+            lambda state: (state.names.pop(source, None), state.names.__setitem__(target, number)),
+        )
 
     def call(self, kind, path, *rest):
         # created without a call of a program: output of a child
@@ -92,28 +100,47 @@ class Disk:
             self.certain.files[number] = bytes.fromhex(rest[0]) if rest else b""
         elif kind == "write":
             at, data = int(rest[0]), bytes.fromhex(rest[1])
-            self.change(number, lambda state, cut=None: state.files.__setitem__(number, written(state.files[number], at, cut(data) if cut else data)))
+            self.change(
+                number,
+                lambda state, cut=None: state.files.__setitem__(
+                    number, written(state.files[number], at, cut(data) if cut else data)
+                ),
+            )
         elif kind == "size":
             size = int(rest[0])
-            self.change(number, lambda state: state.files.__setitem__(number, state.files[number][:size].ljust(size, b"\0")))
+            self.change(
+                number,
+                lambda state: state.files.__setitem__(number, state.files[number][:size].ljust(size, b"\0")),
+            )
 
     def after(self, changes, cut=None):
         """The disk with these changes, the last of them cut."""
         state = State(dict(self.certain.names), dict(self.certain.files))
         for i, change in enumerate(changes):
             change.what(state, cut) if cut and i == len(changes) - 1 else change.what(state)
-        gone = {path for path in state.names if any(str(parent) != "." and str(parent) not in state.names for parent in pathlib.PurePath(path).parents)}
-        return {path: None if number is None else state.files[number] for path, number in state.names.items() if path not in gone}
+        gone = {
+            path
+            for path in state.names
+            if any(
+                str(parent) != "." and str(parent) not in state.names
+                for parent in pathlib.PurePath(path).parents
+            )
+        }
+        return {
+            path: None if number is None else state.files[number]
+            for path, number in state.names.items()
+            if path not in gone
+        }
 
     def possible(self):
         """Every disk that a loss of power at this point may leave."""
         every = self.pending
         yield from (self.after(every), self.after([]))
         for i, change in enumerate(every):
-            yield self.after(every[:i] + every[i + 1:])
+            yield self.after(every[:i] + every[i + 1 :])
             yield self.after([change])
         if every and every[-1].what.__defaults__ is not None:  # a write
-            yield self.after(every, lambda data: data[:len(data) // 2])
+            yield self.after(every, lambda data: data[: len(data) // 2])
             yield self.after(every, lambda data: bytes(len(data)))
 
 
@@ -136,20 +163,73 @@ class Power(Case):
         super().tearDownClass()
 
     def words(self, command, folder):
-        cells = ("--mesh", self.good, "--mesh", self.good, "--device", "host", "--algorithm", "chunked,tiled", "--set", "k=6", *CAPACITIES, "--repeat", 2, "--truth", "none", "--quiet")
-        return {"run": ("run", *cells, "--out", folder / "new.jsonl"), "append": ("run", *cells, "--out", folder / "old.jsonl"),
-                "simulate": ("simulate", "arch:segments=2", "--steps", 5, "--checkpoint", 2, "--dynamics", "absolute_tolerance=1", "--device", "host", "-o", folder / "a.frames",
-                             "--record", folder / "s.jsonl", "--quiet"),
-                "paper": ("paper", "--device", "host", "-o", folder / "paper", "--steps", "chunks-morton,chunks-breadth", "--measure-only")}[command]
+        cells = (
+            "--mesh",
+            self.good,
+            "--mesh",
+            self.good,
+            "--device",
+            "host",
+            "--algorithm",
+            "chunked,tiled",
+            "--set",
+            "k=6",
+            *CAPACITIES,
+            "--repeat",
+            2,
+            "--truth",
+            "none",
+            "--quiet",
+        )
+        return {
+            "run": ("run", *cells, "--out", folder / "new.jsonl"),
+            "append": ("run", *cells, "--out", folder / "old.jsonl"),
+            "simulate": (
+                "simulate",
+                "arch:segments=2",
+                "--steps",
+                5,
+                "--checkpoint",
+                2,
+                "--dynamics",
+                "absolute_tolerance=1",
+                "--device",
+                "host",
+                "-o",
+                folder / "a.frames",
+                "--record",
+                folder / "s.jsonl",
+                "--quiet",
+            ),
+            "paper": (
+                "paper",
+                "--device",
+                "host",
+                "-o",
+                folder / "paper",
+                "--steps",
+                "chunks-morton,chunks-breadth",
+                "--measure-only",
+            ),
+        }[command]
 
     def goes_on(self, command, folder):
         has_any = (folder / "a.frames").exists() if command == "simulate" else command in ("run", "append")
-        return tandem(*self.words(command, folder), *(["--resume"] if has_any else []), environment={"TANDEM_KERNEL_CACHE": str(self.work / "cache")})
+        return tandem(
+            *self.words(command, folder),
+            *(["--resume"] if has_any else []),
+            environment={"TANDEM_KERNEL_CACHE": str(self.work / "cache")},
+        )
 
     def watched(self, command, folder):
         """Log lines of the command's changes to a folder."""
         log = self.work / f"{command}.log"
-        environment = {"LD_PRELOAD": PRELOAD, "POWER_FOLDER": str(folder.resolve()), "POWER_LOG": str(log), "TANDEM_KERNEL_CACHE": str(self.work / "cache")}
+        environment = {
+            "LD_PRELOAD": PRELOAD,
+            "POWER_FOLDER": str(folder.resolve()),
+            "POWER_LOG": str(log),
+            "TANDEM_KERNEL_CACHE": str(self.work / "cache"),
+        }
         self.assertEqual(tandem(*self.words(command, folder), environment=environment)[0], 0)
         calls = [line.split("\t") for line in log.read_text().splitlines()]
         self.assertTrue({"make", "write", "sync"} <= {call[0] for call in calls}, "calls that are seen")
@@ -187,10 +267,17 @@ class Power(Case):
     def judge(self, command, folder, promised, whole):
         lines, steps = promised
         code, text, errors = self.goes_on(command, folder)
-        messages = [line for line in errors if line.startswith("tandem: ") and not re.search(r"the last line was torn", line)]
+        messages = [
+            line
+            for line in errors
+            if line.startswith("tandem: ") and not re.search(r"the last line was torn", line)
+        ]
         self.assertEqual((code, messages), (0, []), text)
         for path, kept in lines.items():
-            self.assertTrue(set(kept) <= set(whole_lines((folder / path).read_bytes())), f"{path}: a promised record is gone")
+            self.assertTrue(
+                set(kept) <= set(whole_lines((folder / path).read_bytes())),
+                f"{path}: a promised record is gone",
+            )
         if steps and (step := re.search(r"continues after step (\d+)", text)):
             self.assertGreaterEqual(int(step[1]), steps)
         for path, content in whole.items():
@@ -202,7 +289,11 @@ class Power(Case):
         if not path.endswith(".jsonl"):
             return content
         lines = [json.loads(line) for line in content.splitlines()]
-        once = {tuple(str(line.get(name)) for name in ("what", "key", "asked", "kind", "step", "exit")) for line in lines if line.get("kind") not in ("run", "verdict")}
+        once = {
+            tuple(str(line.get(name)) for name in ("what", "key", "asked", "kind", "step", "exit"))
+            for line in lines
+            if line.get("kind") not in ("run", "verdict")
+        }
         return sorted(once)
 
     def sweep(self, command, prepare=lambda folder: None):
@@ -211,12 +302,19 @@ class Power(Case):
             folder.mkdir()
             prepare(folder)
         disks = self.disks(command, before)
-        whole = {str(path.relative_to(before)): self.lasting(str(path), path.read_bytes())
-                 for path in before.rglob("*") if path.suffix in (".jsonl", ".frames", ".csv")}
+        whole = {
+            str(path.relative_to(before)): self.lasting(str(path), path.read_bytes())
+            for path in before.rglob("*")
+            if path.suffix in (".jsonl", ".frames", ".csv")
+        }
         for number, (promised, state) in enumerate(disks):
             folder = self.work / f"{command}-{number}"
             self.make(state, folder)
-            with self.subTest(command=command, number=number, disk={path: content and len(content) for path, content in state.items()}):
+            with self.subTest(
+                command=command,
+                number=number,
+                disk={path: content and len(content) for path, content in state.items()},
+            ):
                 self.judge(command, folder, promised, whole)
             shutil.rmtree(folder)
         self.lost[command] = len(disks)
@@ -228,13 +326,23 @@ class Power(Case):
 
     def test_append(self):
         """Appends to existing records and to a line torn by a kill."""
-        self.sweep("append", lambda folder: (folder / "old.jsonl").write_bytes(b'{"what":"was there before"}\n{"what":"to'))
+        self.sweep(
+            "append",
+            lambda folder: (folder / "old.jsonl").write_bytes(b'{"what":"was there before"}\n{"what":"to'),
+        )
 
     def test_simulate(self):
         """Also with an existing checkpoint of another recording."""
         other = self.work / "other.frames"
-        self.assertEqual(tandem("simulate", "arch:segments=2", "--steps", 3, "--device", "host", "-o", other, "--quiet")[0], 0)
-        self.sweep("simulate", lambda folder: shutil.copy(f"{other}.checkpoint", folder / "a.frames.checkpoint"))
+        self.assertEqual(
+            tandem("simulate", "arch:segments=2", "--steps", 3, "--device", "host", "-o", other, "--quiet")[
+                0
+            ],
+            0,
+        )
+        self.sweep(
+            "simulate", lambda folder: shutil.copy(f"{other}.checkpoint", folder / "a.frames.checkpoint")
+        )
 
     def test_paper(self):
         self.sweep("paper")

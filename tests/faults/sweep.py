@@ -1,9 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""sweep.py PROGRAM SOURCE: every call to the C library fails in turn, one per run: malloc (once, or all later large
-ones too), open, write, fsync, rename, ftruncate and pthread_create, in every command that records. The program
-must end with a documented code and one line that gives the reason; earlier records stay complete. PRELOAD names
-the library that makes calls fail."""
+"""sweep.py PROGRAM SOURCE: every call to the C library fails in turn, one per run: malloc (once, or all later
+large ones too), open, write, fsync, rename, ftruncate and pthread_create, in every command that records. The
+program must end with a documented code and one line that gives the reason; earlier records stay complete.
+PRELOAD names the library that makes calls fail."""
+
 import collections
 import concurrent.futures
 import json
@@ -20,8 +21,16 @@ from program import LONG, PROGRAM, SOURCE, Case, sets, tandem, tried
 
 PRELOAD = os.environ["PRELOAD"]
 FAMILIES = ("open", "write", "fsync", "rename", "truncate", "thread", "large", "malloc")
-CALLS = {"open": "open", "write": "write", "fsync": "fsync", "rename": "rename", "truncate": "ftruncate", "thread": "pthread_create",
-         "large": "all large malloc from one on", "malloc": "malloc"}
+CALLS = {
+    "open": "open",
+    "write": "write",
+    "fsync": "fsync",
+    "rename": "rename",
+    "truncate": "ftruncate",
+    "thread": "pthread_create",
+    "large": "all large malloc from one on",
+    "malloc": "malloc",
+}
 CELLS = ("plan", "check", "accuracy")  # commands with several cells
 LIBRARYS_WORDS = r"std::|::at\b|basic_string|bad_alloc|json\.exception|vector::"
 SHORT = 5  # runs per command and family in the short form, except malloc
@@ -35,10 +44,16 @@ Outcome = collections.namedtuple("Outcome", "code signal errors owner hung stack
 
 def functions(stack):
     """Names of the program's functions in the lines of a stack, the innermost first."""
-    places = [match[1] for line in stack if (match := re.search(re.escape(OURS) + r"\([^)]*\+(0x[0-9a-f]+)\)", line))]
+    places = [
+        match[1]
+        for line in stack
+        if (match := re.search(re.escape(OURS) + r"\([^)]*\+(0x[0-9a-f]+)\)", line))
+    ]
     if not places:
         return []
-    names = subprocess.run(["addr2line", "-Cfe", str(PROGRAM), *places], capture_output=True, text=True).stdout.splitlines()[::2]
+    names = subprocess.run(
+        ["addr2line", "-Cfe", str(PROGRAM), *places], capture_output=True, text=True
+    ).stdout.splitlines()[::2]
     return [re.sub(r"nlohmann::json_abi\w+::|std::__cxx11::|\[abi:\w+\]", "", name)[:90] for name in names]
 
 
@@ -51,20 +66,60 @@ class Sweep(Case):
     def setUpClass(cls):
         super().setUpClass()
         cls.old = cls.work / "old.jsonl"
-        assert tandem("run", "--mesh", cls.good, "--mesh", cls.good, "--device", "host", "--set", "k=8", "--repeat", 1, "--truth", "none", "--out", cls.old)[0] == 0
+        assert (
+            tandem(
+                "run",
+                "--mesh",
+                cls.good,
+                "--mesh",
+                cls.good,
+                "--device",
+                "host",
+                "--set",
+                "k=8",
+                "--repeat",
+                1,
+                "--truth",
+                "none",
+                "--out",
+                cls.old,
+            )[0]
+            == 0
+        )
         cls.plan = cls.work / "cells.json"
-        cls.plan.write_text(json.dumps({"plan": "two cells", "scenes": "pile:bodies=2,frames=1", "devices": "host", "algorithms": ["tiled"],
-                                        "settings": {"k": [6, 8], **{name: 4096 for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity")}},
-                                        "measure": {"repeat": 1, "truth": "none"}}))
+        cls.plan.write_text(
+            json.dumps(
+                {
+                    "plan": "two cells",
+                    "scenes": "pile:bodies=2,frames=1",
+                    "devices": "host",
+                    "algorithms": ["tiled"],
+                    "settings": {
+                        "k": [6, 8],
+                        **{
+                            name: 4096 for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity")
+                        },
+                    },
+                    "measure": {"repeat": 1, "truth": "none"},
+                }
+            )
+        )
 
     @classmethod
     def tearDownClass(cls):
         counts = ", ".join(f"{cls.counts[family]} of {family}" for family in FAMILIES if cls.counts[family])
-        print(f"faults injected: {counts}; ended by a signal in other people's libraries: {dict(sum(cls.lost_by.values(), collections.Counter())) or 'none'}")
+        print(
+            f"faults injected: {counts}; ended by a signal in other people's libraries: {dict(sum(cls.lost_by.values(), collections.Counter())) or 'none'}"
+        )
         # Without a failed test, all of them were checked; otherwise no line is added.
         if cls.swept == cls.wanted:
             for family in FAMILIES:
-                tried(f"calls that fail: {CALLS[family]}", cls.counts[family], "runs", rest=sum(cls.lost_by[family].values()))
+                tried(
+                    f"calls that fail: {CALLS[family]}",
+                    cls.counts[family],
+                    "runs",
+                    rest=sum(cls.lost_by[family].values()),
+                )
         super().tearDownClass()
 
     def commands(self, folder):
@@ -72,16 +127,99 @@ class Sweep(Case):
         to the folder."""
         out = folder / "old.jsonl"
         cell = ("--mesh", self.good, "--mesh", self.good, "--device", "host", "--set", "k=8")
-        tiled = ("--algorithm", "tiled", *sets({name: 4096 for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity")}))
-        return {"run": (("run", *cell, *tiled, "--repeat", 1, "--truth", "contacts", "--out", out, "--dump-pairs", folder / "pairs.csv", "--trace", folder / "trace.json"), out),
-                "plan": (("run", self.plan, "--out", out), out),
-                "check": (("check", *cell, "--algorithm", "chunked", "--preset", "grouped,published", *sets({name: 4096 for name in ("pair_capacity", "contact_capacity", "seed_capacity")})), None),
-                "accuracy": (("accuracy", *cell, "--set", "contact_rule=sat", "--set", "decision=fp32",
-                              "--set", "precision=float", "--set", "rounding=safe", *tiled, "--repeat", 1, "--out", out), out),
-                "simulate": (("simulate", "arch:segments=2", "--steps", 2, "--device", "host", "-o", folder / "a.frames", "--record", out, "--quiet",
-                              "--dynamics", "absolute_tolerance=1"), out),
-                "export": (("export", "pile:bodies=2,frames=2", "--frames", "0:1", "--vtu", folder / "vtu", "--glb", folder / "a.glb", "--geometry", folder / "g.json",
-                            "--chunks", folder / "c.csv"), None)}
+        tiled = (
+            "--algorithm",
+            "tiled",
+            *sets({name: 4096 for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity")}),
+        )
+        return {
+            "run": (
+                (
+                    "run",
+                    *cell,
+                    *tiled,
+                    "--repeat",
+                    1,
+                    "--truth",
+                    "contacts",
+                    "--out",
+                    out,
+                    "--dump-pairs",
+                    folder / "pairs.csv",
+                    "--trace",
+                    folder / "trace.json",
+                ),
+                out,
+            ),
+            "plan": (("run", self.plan, "--out", out), out),
+            "check": (
+                (
+                    "check",
+                    *cell,
+                    "--algorithm",
+                    "chunked",
+                    "--preset",
+                    "grouped,published",
+                    *sets({name: 4096 for name in ("pair_capacity", "contact_capacity", "seed_capacity")}),
+                ),
+                None,
+            ),
+            "accuracy": (
+                (
+                    "accuracy",
+                    *cell,
+                    "--set",
+                    "contact_rule=sat",
+                    "--set",
+                    "decision=fp32",
+                    "--set",
+                    "precision=float",
+                    "--set",
+                    "rounding=safe",
+                    *tiled,
+                    "--repeat",
+                    1,
+                    "--out",
+                    out,
+                ),
+                out,
+            ),
+            "simulate": (
+                (
+                    "simulate",
+                    "arch:segments=2",
+                    "--steps",
+                    2,
+                    "--device",
+                    "host",
+                    "-o",
+                    folder / "a.frames",
+                    "--record",
+                    out,
+                    "--quiet",
+                    "--dynamics",
+                    "absolute_tolerance=1",
+                ),
+                out,
+            ),
+            "export": (
+                (
+                    "export",
+                    "pile:bodies=2,frames=2",
+                    "--frames",
+                    "0:1",
+                    "--vtu",
+                    folder / "vtu",
+                    "--glb",
+                    folder / "a.glb",
+                    "--geometry",
+                    folder / "g.json",
+                    "--chunks",
+                    folder / "c.csv",
+                ),
+                None,
+            ),
+        }
 
     def fault(self, command, family, at, number):
         """One run in a separate folder in which call `number` of a family fails; 0: no call fails, and calls are
@@ -91,9 +229,21 @@ class Sweep(Case):
         shutil.copy(self.old, folder)
         log = folder / "log"
         words, _ = self.commands(folder)[command]
-        environment = {**os.environ, "LD_PRELOAD": PRELOAD, "FAULTS_CALL": family, "FAULTS_AT": str(at), "FAULTS_LOG": str(log),
-                       "TANDEM_KERNEL_CACHE": str(folder / "cache")}
-        running = subprocess.Popen([str(PROGRAM), *map(str, words)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=environment)
+        environment = {
+            **os.environ,
+            "LD_PRELOAD": PRELOAD,
+            "FAULTS_CALL": family,
+            "FAULTS_AT": str(at),
+            "FAULTS_LOG": str(log),
+            "TANDEM_KERNEL_CACHE": str(folder / "cache"),
+        }
+        running = subprocess.Popen(
+            [str(PROGRAM), *map(str, words)],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+            env=environment,
+        )
         hung = False
         try:
             errors = pace.communicate(running, HANGS)[1].splitlines()
@@ -103,7 +253,11 @@ class Sweep(Case):
         lines = [line.split() for line in text if line.startswith(family)]
         stack = [line for line in text if not line.startswith(family)]
         owner = next((line[2] for line in lines if len(line) == 4), None)
-        return folder, lines, Outcome(running.returncode, running.returncode < 0 and not hung, errors, owner, hung, stack)
+        return (
+            folder,
+            lines,
+            Outcome(running.returncode, running.returncode < 0 and not hung, errors, owner, hung, stack),
+        )
 
     def places(self, command, family):
         """Numbers of the calls to fail: every one; for malloc the first 500 and the first of every site in the
@@ -113,13 +267,19 @@ class Sweep(Case):
         total = int(lines[-1][2])
         if family != "malloc":
             every = range(1, total + 1)
-            return list(every) if LONG else list(every)[::max(1, -(-total // SHORT))]
+            return list(every) if LONG else list(every)[:: max(1, -(-total // SHORT))]
         firsts = [int(line[1]) for line in lines[:-1] if line[2] == OURS]
         self.assertGreater(len(firsts), 100, "places in the program that take memory")
-        return sorted({*range(1, min(total, 500) + 1), *firsts}) if LONG else firsts[::-(-len(firsts) // SHORT_MALLOC)]
+        return (
+            sorted({*range(1, min(total, 500) + 1), *firsts})
+            if LONG
+            else firsts[:: -(-len(firsts) // SHORT_MALLOC)]
+        )
 
     def judge(self, command, family, at, folder, outcome):
-        where = f"{command}: call {at} of {family}, of {outcome.owner}: {outcome.errors}\n  " + "\n  ".join(functions(outcome.stack))
+        where = f"{command}: call {at} of {family}, of {outcome.owner}: {outcome.errors}\n  " + "\n  ".join(
+            functions(outcome.stack)
+        )
         self.assertFalse(outcome.hung, where)
         old = self.old.read_bytes()
         kept = (folder / "old.jsonl").read_bytes()
@@ -144,7 +304,9 @@ class Sweep(Case):
         for family in FAMILIES:
             numbers = self.places(command, family)
             with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as several:
-                for at, (folder, _, outcome) in zip(numbers, several.map(lambda at: self.fault(command, family, at, at), numbers)):
+                for at, (folder, _, outcome) in zip(
+                    numbers, several.map(lambda at: self.fault(command, family, at, at), numbers)
+                ):
                     with self.subTest(family=family, at=at):
                         self.judge(command, family, at, folder, outcome)
                     shutil.rmtree(folder)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""made.py FOLDER: writes meshes of Gmsh in its formats, and FOLDER/expected.json: for each file what Gmsh says is in it. Runs under a Python
-that has the package gmsh."""
+"""made.py FOLDER: writes meshes of Gmsh in its formats, and FOLDER/expected.json: for each file what Gmsh
+says is in it. Runs under a Python that has the package gmsh."""
+
 import json
 import pathlib
 import sys
@@ -10,9 +11,16 @@ import gmsh
 TETRAHEDRA = {4: 1, 11: 2, 29: 3}  # Gmsh's element types, with their orders
 OTHER_CELLS = (5, 6, 7, 12, 13, 14, 17, 18, 19)  # hexahedra, prisms and pyramids of orders 1 and 2
 FORMATS = [  # suffix, options
-    *((".msh", {"Mesh.MshFileVersion": version, "Mesh.Binary": binary}) for version, binary in ((1, 0), (2.2, 0), (2.2, 1), (4, 0), (4.1, 0), (4.1, 1))),
+    *(
+        (".msh", {"Mesh.MshFileVersion": version, "Mesh.Binary": binary})
+        for version, binary in ((1, 0), (2.2, 0), (2.2, 1), (4, 0), (4.1, 0), (4.1, 1))
+    ),
     *((".vtk", {"Mesh.Binary": binary}) for binary in (0, 1)),
-    *((suffix, {"Mesh.Binary": 0}) for suffix in (".mesh", ".unv", ".inp", ".su2", ".cgns", ".med", ".bdf", ".key"))]
+    *(
+        (suffix, {"Mesh.Binary": 0})
+        for suffix in (".mesh", ".unv", ".inp", ".su2", ".cgns", ".med", ".bdf", ".key")
+    ),
+]
 
 
 def sphere(size=0.35):
@@ -34,7 +42,7 @@ def in_two_groups():
     gmsh.model.occ.synchronize()
     gmsh.option.setNumber("Mesh.MeshSizeMax", 0.6)
     gmsh.model.addPhysicalGroup(3, [1, 2], 7, "both boxes")
-    gmsh.model.addPhysicalGroup(3, [2], 9, "the second \"box\"")
+    gmsh.model.addPhysicalGroup(3, [2], 9, 'the second "box"')
     gmsh.model.mesh.generate(3)
 
 
@@ -49,7 +57,9 @@ def mixed():
     gmsh.model.occ.addBox(0, 0, 0, 1, 1, 1)
     gmsh.model.occ.synchronize()
     gmsh.option.setNumber("Mesh.MeshSizeMax", 0.5)
-    top = next(tag for dim, tag in gmsh.model.getEntities(2) if gmsh.model.occ.getCenterOfMass(dim, tag)[2] > 0.99)
+    top = next(
+        tag for dim, tag in gmsh.model.getEntities(2) if gmsh.model.occ.getCenterOfMass(dim, tag)[2] > 0.99
+    )
     gmsh.model.occ.extrude([(2, top)], 0, 0, 0.5, [2], recombine=True)
     gmsh.model.occ.synchronize()
     gmsh.model.mesh.generate(3)
@@ -58,18 +68,28 @@ def mixed():
 def with_large_tags():
     """Numbers of nodes and elements with gaps, up to two billion."""
     sphere(0.6)
-    nodes, elements = gmsh.model.mesh.getNodes()[0], [tag for tags in gmsh.model.mesh.getElements()[1] for tag in tags]
+    nodes, elements = (
+        gmsh.model.mesh.getNodes()[0],
+        [tag for tags in gmsh.model.mesh.getElements()[1] for tag in tags],
+    )
     gmsh.model.mesh.renumberNodes(list(nodes), [2_000_000_000 - 7 * int(tag) for tag in nodes])
     gmsh.model.mesh.renumberElements(elements, [1_900_000_000 - 3 * int(tag) for tag in elements])
 
 
-CONTENTS = {"sphere": sphere, "order2": lambda: of_order(2), "order3": lambda: of_order(3), "two_groups": in_two_groups, "parts": in_parts, "mixed": mixed,
-            "large_tags": with_large_tags}
+CONTENTS = {
+    "sphere": sphere,
+    "order2": lambda: of_order(2),
+    "order3": lambda: of_order(3),
+    "two_groups": in_two_groups,
+    "parts": in_parts,
+    "mixed": mixed,
+    "large_tags": with_large_tags,
+}
 
 
 def expected(suffix, options):
-    """Elements of a file of the current model. Old versions of MSH repeat an element for each of its groups. Some formats also have ghost
-    elements, which other parts have too. Gmsh writes no prisms to .mesh."""
+    """Elements of a file of the current model. Old versions of MSH repeat an element for each of its groups.
+    Some formats also have ghost elements, which other parts have too. Gmsh writes no prisms to .mesh."""
     counts = {"tetrahedra": 0, "duplicates": 0, "reduced": 0, "other_cells": 0}
     repeats = suffix == ".msh" and options["Mesh.MshFileVersion"] < 4
     for dim, tag in gmsh.model.getEntities(3):

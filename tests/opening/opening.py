@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""opening.py PROGRAM STUBS TRAP: the backends that a command opens, with drivers that abort any process that loads
-them: TRAP replaces an OpenCL driver, CUDA's and NVML. STUBS has a working driver of CUDA."""
+"""opening.py PROGRAM STUBS TRAP: the backends that a command opens, with drivers that abort any process that
+loads them: TRAP replaces an OpenCL driver, CUDA's and NVML. STUBS has a working driver of CUDA."""
+
 import os
 import pathlib
 import subprocess
@@ -34,10 +35,14 @@ class Opening(unittest.TestCase):
         for name in ("TANDEM_CUPTI", "TANDEM_NVML", "TANDEM_NVRTC"):
             environment.pop(name, None)
         if not cuda:
-            environment.update(TANDEM_NVRTC=str(STUBS / "nvrtc/libnvrtc.so"), TANDEM_CUPTI="", TANDEM_NVML="/nonexistent")
+            environment.update(
+                TANDEM_NVRTC=str(STUBS / "nvrtc/libnvrtc.so"), TANDEM_CUPTI="", TANDEM_NVML="/nonexistent"
+            )
         if opencl:
             environment["OCL_ICD_VENDORS"] = f"{self.work}/icd/"
-        done = subprocess.run([str(PROGRAM), *map(str, arguments)], capture_output=True, text=True, env=environment)
+        done = subprocess.run(
+            [str(PROGRAM), *map(str, arguments)], capture_output=True, text=True, env=environment
+        )
         return done.returncode, done.stdout, done.stderr
 
     def test_the_traps_work(self):
@@ -48,13 +53,18 @@ class Opening(unittest.TestCase):
 
     def test_host_alone(self):
         frames = self.work / "arch.frames"
-        for arguments in ((*RUN, "--device", "host"), (*RUN, "--device", "host", "--require", "host"),
-                          ("check", SCENE, "--device", "host", "--algorithm", "tiled"),
-                          ("accuracy", SCENE, "--device", "host", "--set", "k=6", "--repeat", 1, "--truth-contacts", 1),
-                          ("simulate", "block", "--steps", 1, "--device", "host", "-o", frames),
-                          ("export", SCENE, "--vtu", self.work / "vtu", "--contacts"),
-                          ("devices", "--measure", "--device", "host"), ("algorithms",), ("scenes",),
-                          ("completion", "--words", "run", "--set", "")):
+        for arguments in (
+            (*RUN, "--device", "host"),
+            (*RUN, "--device", "host", "--require", "host"),
+            ("check", SCENE, "--device", "host", "--algorithm", "tiled"),
+            ("accuracy", SCENE, "--device", "host", "--set", "k=6", "--repeat", 1, "--truth-contacts", 1),
+            ("simulate", "block", "--steps", 1, "--device", "host", "-o", frames),
+            ("export", SCENE, "--vtu", self.work / "vtu", "--contacts"),
+            ("devices", "--measure", "--device", "host"),
+            ("algorithms",),
+            ("scenes",),
+            ("completion", "--words", "run", "--set", ""),
+        ):
             status, out, errors = self.tandem(*arguments)
             self.assertEqual(status, 0, (arguments, out, errors))
 
@@ -63,18 +73,27 @@ class Opening(unittest.TestCase):
         status, out, errors = self.tandem(*RUN, "--device", "cuda:0", "--dry-run", cuda=False)
         self.assertEqual((status, errors), (0, ""), out)
         self.assertIn("on cuda:0", out)
-        self.assertEqual(self.tandem(*RUN, "--device", "host", "--require", "cuda", "--dry-run", cuda=False)[0], 0)
+        self.assertEqual(
+            self.tandem(*RUN, "--device", "host", "--require", "cuda", "--dry-run", cuda=False)[0], 0
+        )
 
     def test_required_devices_are_opened(self):
         for required in ("opencl", "opencl:0", "cuda"):
             self.assertLess(self.tandem(*RUN, "--device", "host", "--require", required)[0], 0, required)
 
     def test_unknown_devices_are_searched_in_every_backend(self):
-        for arguments in (("--device", "nix"), ("--device", "host:1"), ("--device", "host", "--require", "nix")):
+        for arguments in (
+            ("--device", "nix"),
+            ("--device", "host:1"),
+            ("--device", "host", "--require", "nix"),
+        ):
             self.assertLess(self.tandem(*RUN, *arguments)[0], 0, arguments)
         status, _, errors = self.tandem(*RUN, "--device", "cuda:7", cuda=False, opencl=False)
         self.assertEqual(status, 2)
-        self.assertRegex(errors, r"unknown device 'cuda:7'; the nearest is 'cuda:0' \(there are: host, (opencl:0, )?cuda:0\)")
+        self.assertRegex(
+            errors,
+            r"unknown device 'cuda:7'; the nearest is 'cuda:0' \(there are: host, (opencl:0, )?cuda:0\)",
+        )
 
 
 if __name__ == "__main__":

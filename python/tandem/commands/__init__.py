@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Subcommands of the program that are written in Python: libexec/tandem/NAME runs `main` of the module NAME. The program checks their
-options first and passes them as --name=value. Other programs of the package also use the functions of this file."""
+"""Subcommands of the program that are written in Python: libexec/tandem/NAME runs `main` of the module NAME.
+The program checks their options first and passes them as --name=value. Other programs of the package also use
+the functions of this file."""
+
 import argparse
 import importlib.util
 import os
@@ -30,8 +32,8 @@ def print_error(problem, code):
 
 
 def check_packages(command, names, instead=""):
-    """If this Python lacks a package, starts the command again with /usr/bin/python3, or with the python3 of PATH. Raises BadUse if that one
-    lacks a package too, or there is no other Python."""
+    """If this Python lacks a package, starts the command again with /usr/bin/python3, or with the python3 of
+    PATH. Raises BadUse if that one lacks a package too, or there is no other Python."""
     missing = [name for name in names if importlib.util.find_spec(name) is None]
     if not missing:
         return
@@ -39,11 +41,14 @@ def check_packages(command, names, instead=""):
         if other and not os.path.samefile(other, sys.executable) and "TANDEM_PYTHON_TRIED" not in os.environ:
             os.environ["TANDEM_PYTHON_TRIED"] = "1"
             os.execv(other, [other, *sys.orig_argv[1:]])
-    raise BadUse(f"{command} needs python3 with {', '.join(missing)}; install {' '.join(f'python3-{name}' for name in missing)}{instead}")
+    raise BadUse(
+        f"{command} needs python3 with {', '.join(missing)}; install {' '.join(f'python3-{name}' for name in missing)}{instead}"
+    )
 
 
 def _print(text):
-    """Writes and flushes a text of lines on standard output, with control characters as escapes. Names of files in it need not be UTF-8."""
+    """Writes and flushes a text of lines on standard output, with control characters as escapes. Names of
+    files in it need not be UTF-8."""
     try:
         sys.stdout.buffer.write(visible(text, "\n\t").encode(errors="surrogateescape"))
         sys.stdout.buffer.flush()
@@ -54,8 +59,10 @@ def _print(text):
 
 
 def run(make):
-    """Runs a command and returns its exit code. `make` returns its text and exit code, or raises BadUse, RecordError or OutputError."""
+    """Runs a command and returns its exit code. `make` returns its text and exit code, or raises BadUse,
+    RecordError or OutputError."""
     from ..lines import RecordError
+
     try:
         text, code = make()
         _print(text)

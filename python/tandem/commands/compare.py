@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""tandem compare: which cells changed, by how much and how surely. Exits with 1 if a cell is slower, faster or has another answer."""
+"""tandem compare: which cells changed, by how much and how surely. Exits with 1 if a cell is slower, faster
+or has another answer."""
+
 import argparse
 import contextlib
 import tempfile
@@ -31,16 +33,19 @@ def _parsed(arguments):
 
 
 def _form(options):
-    """The function that makes the text of a comparison. Imports every module that compares: the files of these modules may change while two
-    programs are measured."""
+    """The function that makes the text of a comparison. Imports every module that compares: the files of
+    these modules may change while two programs are measured."""
     from ..comparison import texts
+
     return {"text": texts.text, "json": texts.as_json, "markdown": texts.markdown}[options.format]
 
 
 def _text(found, options, form):
     """The text of a comparison, and its exit code."""
     matched = found[2]
-    return form(*found, options.level), int(matched.changed or (options.strict and matched.count("disturbed") > 0))
+    return form(*found, options.level), int(
+        matched.changed or (options.strict and matched.count("disturbed") > 0)
+    )
 
 
 def _threshold(options):
@@ -49,22 +54,32 @@ def _threshold(options):
 
 def _compared_files(options):
     from .. import comparison
-    found = comparison.matched_files(options.old, options.new, _threshold(options), options.level, (options.commit_old, options.commit_new))
+
+    found = comparison.matched_files(
+        options.old, options.new, _threshold(options), options.level, (options.commit_old, options.commit_new)
+    )
     return _text(found, options, _form(options))
 
 
 def _compared_programs(options):
     from .. import comparison
     from ..comparison import turns
+
     form = _form(options)
     with contextlib.ExitStack() as stack:
-        folder = options.out if options.out else stack.enter_context(tempfile.TemporaryDirectory(prefix="tandem-compare"))
+        folder = (
+            options.out
+            if options.out
+            else stack.enter_context(tempfile.TemporaryDirectory(prefix="tandem-compare"))
+        )
         both = turns.Turns(options.old, options.new, options.words, folder)
         turns.prepared_folder(folder)
         ended = both.measure(options.sessions)
         old, new = (both.side(side) for side in turns.SIDES)
     try:
-        text, code = _text(comparison.matched_cells(old, new, _threshold(options), options.level), options, form)
+        text, code = _text(
+            comparison.matched_cells(old, new, _threshold(options), options.level), options, form
+        )
     except comparison.lines.RecordError as problem:
         if not (ended.failure or ended.wrong):
             raise

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""tandem convert: reads a mesh by meshio, or a .tet or .t file, and writes it as .vtu, which tandem reads. Cells of every kind are kept, and data are not."""
+"""tandem convert: reads a mesh by meshio, or a .tet or .t file, and writes it as .vtu, which tandem reads.
+Cells of every kind are kept, and data are not."""
+
 import contextlib
 import io
 import os
@@ -25,7 +27,8 @@ def _words(path):
 
 
 def _tet(path):
-    """Points and tetrahedra of the two formats with the suffix .tet: "tet V T", or "V vertices T tets" with a 4 before each tetrahedron."""
+    """Points and tetrahedra of the two formats with the suffix .tet: "tet V T", or "V vertices T tets" with a
+    4 before each tetrahedron."""
     words = _words(path)
     try:
         counted = words[0] == "tet"
@@ -33,19 +36,24 @@ def _tet(path):
         start, width = (3, 4) if counted else (4, 5)
         end = start + 3 * points
         count = end + width * cells
-        rows = [words[end + width * i:end + width * (i + 1)][width - 4:] for i in range(cells)]
-        positions = [[float(word) for word in words[start + 3 * i:start + 3 * i + 3]] for i in range(points)]
+        rows = [words[end + width * i : end + width * (i + 1)][width - 4 :] for i in range(cells)]
+        positions = [
+            [float(word) for word in words[start + 3 * i : start + 3 * i + 3]] for i in range(points)
+        ]
         corners = [[int(word) for word in row] for row in rows]
     except (IndexError, ValueError):
         raise BadUse(f"{path}: is no .tet file; it begins with 'tet V T' or 'V vertices T tets'") from None
     if len(words) != count:
-        raise BadUse(f"{path}: {len(words)} words for {points} vertices and {cells} tetrahedra; export the file again")
+        raise BadUse(
+            f"{path}: {len(words)} words for {points} vertices and {cells} tetrahedra; export the file again"
+        )
     return positions, corners
 
 
 def _t(path):
-    """Points and tetrahedra of a .t file, of MeshLib and of the simulator Gaia: lines "Vertex N x y z" and "Tet N V V V V", in which V are numbers
-    N of vertices above. Properties in braces, and other lines, are left out."""
+    """Points and tetrahedra of a .t file, of MeshLib and of the simulator Gaia: lines "Vertex N x y z" and
+    "Tet N V V V V", in which V are numbers N of vertices above. Properties in braces, and other lines, are
+    left out."""
     rows, positions, corners = {}, [], []
     try:
         with open(path, encoding="utf-8", errors="replace") as file:
@@ -63,9 +71,13 @@ def _t(path):
     except OSError as problem:
         raise BadUse(f"{path}: cannot be read ({problem.strerror}); check the file") from None
     except KeyError as problem:
-        raise BadUse(f"{path}:{line}: there is no vertex {problem.args[0]} above; export the file again") from None
+        raise BadUse(
+            f"{path}:{line}: there is no vertex {problem.args[0]} above; export the file again"
+        ) from None
     except ValueError:
-        raise BadUse(f"{path}:{line}: is no line 'Vertex N x y z' or 'Tet N V V V V' with a new N; export the file again") from None
+        raise BadUse(
+            f"{path}:{line}: is no line 'Vertex N x y z' or 'Tet N V V V V' with a new N; export the file again"
+        ) from None
     return positions, corners
 
 
@@ -74,19 +86,26 @@ OWN = {".tet": _tet, ".t": _t}  # readers by suffix, of formats that meshio does
 
 def _by_meshio(path):
     import meshio
+
     errors = io.StringIO()
     try:
         with contextlib.redirect_stdout(errors), contextlib.redirect_stderr(errors):
             return meshio.read(path)
     except ImportError as problem:
         raise BadUse(f"{path}: meshio needs {problem.name} for this format; install it with pip") from None
-    except (Exception, SystemExit) as problem:  # meshio ends the program where it cannot read, and has no type of its own for damaged files
+    except (
+        Exception,
+        SystemExit,
+    ) as problem:  # meshio ends the program where it cannot read, and has no type of its own for damaged files
         message = errors.getvalue() or ("" if isinstance(problem, SystemExit) else str(problem))
-        raise BadUse(f"{path}: meshio cannot read it ({' '.join(message.split()) or 'damaged'}); export .msh, .vtk or .vtu") from None
+        raise BadUse(
+            f"{path}: meshio cannot read it ({' '.join(message.split()) or 'damaged'}); export .msh, .vtk or .vtu"
+        ) from None
 
 
 def _read(path):
     import meshio
+
     reader = OWN.get(os.path.splitext(path)[1].lower())
     if reader:
         points, tetrahedra = reader(path)
@@ -102,7 +121,9 @@ def _vtu(mesh):
         try:
             mesh.write(path, file_format="vtu")
         except Exception as problem:  # meshio has no type of its own
-            raise BadUse(f"meshio cannot write this mesh ({' '.join(str(problem).split())}); export its tetrahedra alone") from None
+            raise BadUse(
+                f"meshio cannot write this mesh ({' '.join(str(problem).split())}); export its tetrahedra alone"
+            ) from None
         with open(path, "rb") as file:
             return file.read()
 
@@ -116,6 +137,7 @@ def _make(arguments):
     check_output(options.output, [options.file], ".partial")
     check_packages("tandem convert", ("numpy", "meshio"))
     import numpy
+
     mesh = _read(options.file)
     tetrahedra = sum(len(block.data) for block in mesh.cells if block.type.startswith("tetra"))
     if tetrahedra == 0:

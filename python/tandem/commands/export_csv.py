@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""tandem export --csv: writes the records of a file as a table of comma-separated values (RFC 4180). The first line has the names of the
-columns; then each record, of any status, has one line. Columns name the cell and its status, then come times in milliseconds per frame,
-counters and settings. Missing values are empty. A text that begins with =, +, -, @, tab or carriage return has an apostrophe before it, so that
-spreadsheets do not take it for a formula; control characters of texts are escapes. Numbers are never changed."""
+"""tandem export --csv: writes the records of a file as a table of comma-separated values (RFC 4180). The
+first line has the names of the columns; then each record, of any status, has one line. Columns name the cell
+and its status, then come times in milliseconds per frame, counters and settings. Missing values are empty. A
+text that begins with =, +, -, @, tab or carriage return has an apostrophe before it, so that spreadsheets do
+not take it for a formula; control characters of texts are escapes. Numbers are never changed."""
+
 import json
 
 from .. import cell_rows, lines
@@ -25,13 +27,19 @@ def _row(record, path, line):
     try:
         return cell_rows.row(record)
     except lines.FIELD_ERRORS:
-        raise lines.RecordError(f"{path}:{line}: a record that lacks fields of its schema; {lines.WHAT_TO_GIVE}") from None
+        raise lines.RecordError(
+            f"{path}:{line}: a record that lacks fields of its schema; {lines.WHAT_TO_GIVE}"
+        ) from None
 
 
 def _text(column, value):
     if value is None or isinstance(value, str):
         return text_field(value or "")
-    return f"{value:.9g}" if cell_rows.is_time(column) else json.dumps(value, separators=(",", ":"), sort_keys=True, ensure_ascii=False)
+    return (
+        f"{value:.9g}"
+        if cell_rows.is_time(column)
+        else json.dumps(value, separators=(",", ":"), sort_keys=True, ensure_ascii=False)
+    )
 
 
 def _quoted(text):

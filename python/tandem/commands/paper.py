@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""tandem paper: measures the steps of a plan, then makes tables, figures, verdicts and index.html from the records of its folder.
-Exits with 2 and one error line for bad use and a folder without records, and with 3 if a step failed or a file cannot be written."""
+"""tandem paper: measures the steps of a plan, then makes tables, figures, verdicts and index.html from the
+records of its folder. Exits with 2 and one error line for bad use and a folder without records, and with 3 if
+a step failed or a file cannot be written."""
+
 import argparse
 import csv
 import pathlib
@@ -15,8 +17,25 @@ from . import check_packages, print_error
 PACKAGES = ("matplotlib", "pandas", "scipy")
 
 
-CLAIM_COLUMNS = ("claim", "where", "says", "scene", "verdict", "value", "low", "high", "unit", "paper_low", "paper_high", "samples", "basis", "disturbed", "frames",
-                 "reason", "records")
+CLAIM_COLUMNS = (
+    "claim",
+    "where",
+    "says",
+    "scene",
+    "verdict",
+    "value",
+    "low",
+    "high",
+    "unit",
+    "paper_low",
+    "paper_high",
+    "samples",
+    "basis",
+    "disturbed",
+    "frames",
+    "reason",
+    "records",
+)
 
 
 def claim_rows(claim):
@@ -24,10 +43,20 @@ def claim_rows(claim):
     fields = {"claim": claim.id, "where": claim.fields["where"], "says": claim.fields["says"]}
     for line in claim.lines:
         measured, paper = line.measured, list(line.paper.values())
-        row = {**fields, "scene": line.label, "verdict": line.verdict, "reason": line.reason, "unit": claim.fields.get("unit", ""),
-               "paper_low": min(paper, default=None), "paper_high": max(paper, default=None)}
+        row = {
+            **fields,
+            "scene": line.label,
+            "verdict": line.verdict,
+            "reason": line.reason,
+            "unit": claim.fields.get("unit", ""),
+            "paper_low": min(paper, default=None),
+            "paper_high": max(paper, default=None),
+        }
         if measured:
-            row |= {name: getattr(measured, name) for name in ("value", "low", "high", "samples", "basis", "disturbed", "frames")}
+            row |= {
+                name: getattr(measured, name)
+                for name in ("value", "low", "high", "samples", "basis", "disturbed", "frames")
+            }
             row["records"] = " ".join(measured.records)
         yield row
     yield {**fields, "scene": "all", "verdict": claim.verdict}
@@ -35,23 +64,44 @@ def claim_rows(claim):
 
 def write_claims(path, found):
     from ..paper.tables import short
+
     with open(path / "claims.csv", "w", newline="") as file:
         writer = csv.DictWriter(file, CLAIM_COLUMNS, lineterminator="\n")
         writer.writeheader()
-        writer.writerows(fields({name: short(row.get(name)) for name in CLAIM_COLUMNS}) for claim in found for row in claim_rows(claim))
+        writer.writerows(
+            fields({name: short(row.get(name)) for name in CLAIM_COLUMNS})
+            for claim in found
+            for row in claim_rows(claim)
+        )
 
 
 def all_tables(folder):
     from ..paper import comparison_tables, simulation_tables, tables
-    return [make(folder) for make in (tables.table1, tables.table2, simulation_tables.table3, comparison_tables.table4, comparison_tables.table5,
-                                      simulation_tables.table6, simulation_tables.table7)]
+
+    return [
+        make(folder)
+        for make in (
+            tables.table1,
+            tables.table2,
+            simulation_tables.table3,
+            comparison_tables.table4,
+            comparison_tables.table5,
+            simulation_tables.table6,
+            simulation_tables.table7,
+        )
+    ]
 
 
 def check_outputs(path):
     """Raises BadUse if a file of the page cannot be written, or is a file of records."""
     folder = pathlib.Path(path)
     if folder.is_dir():
-        for output in (*folder.glob("*.csv"), *folder.glob("*.svg"), folder / "index.html", folder / "verdicts.md"):
+        for output in (
+            *folder.glob("*.csv"),
+            *folder.glob("*.svg"),
+            folder / "index.html",
+            folder / "verdicts.md",
+        ):
             check_output(output)
 
 
@@ -59,6 +109,7 @@ def build(path):
     """Makes all files. Returns a line with their numbers. Raises lines.RecordError, OSError."""
     from ..paper import claims, figures, page, pictures, simulation_figures, summary
     from ..paper.folder import Folder
+
     folder = Folder(path)
     check_outputs(path)
     made = all_tables(folder)
@@ -78,6 +129,7 @@ def build(path):
 def draw(path):
     """Makes all files and prints their numbers or an error. Returns the exit code."""
     from .. import lines
+
     try:
         print(visible(build(path)), flush=True)
     except (lines.RecordError, BadUse) as error:
@@ -103,7 +155,9 @@ def main(arguments, program):
     options = parsed(arguments)
     try:
         if not options.measure_only and not options.dry_run:
-            check_packages("tandem paper", PACKAGES, ", or give --measure-only")  # fails before anything is measured
+            check_packages(
+                "tandem paper", PACKAGES, ", or give --measure-only"
+            )  # fails before anything is measured
             check_outputs(options.output)
         if options.draw_only:
             return draw(options.output)

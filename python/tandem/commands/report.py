@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """tandem report: writes records, and optionally a scene, as one page for a browser."""
+
 import argparse
 import datetime
 import subprocess
@@ -33,21 +34,28 @@ def _counted(number, one, more):
 
 
 def _contents(cells, records, files):
-    """"36 cells of 2 files", with the numbers of other records."""
-    counts = ((cells, "cell", "cells"), (len(records.profiles), "profile", "profiles"), (len(records.simulations), "simulation", "simulations"),
-              (len(records.ceilings), "device's ceilings", "devices' ceilings"))
+    """ "36 cells of 2 files", with the numbers of other records."""
+    counts = (
+        (cells, "cell", "cells"),
+        (len(records.profiles), "profile", "profiles"),
+        (len(records.simulations), "simulation", "simulations"),
+        (len(records.ceilings), "device's ceilings", "devices' ceilings"),
+    )
     return f"{', '.join(_counted(*one) for one in counts if one[0])} of {_counted(files, 'file', 'files')}"
 
 
 def _made_by(program):
     """The program's version in one line, and the date and time."""
-    version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout.strip()
+    version = subprocess.run(
+        [program, "--version"], capture_output=True, text=True, check=True
+    ).stdout.strip()
     return version, datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
 
 
 def _add_scene(page, options, program):
     """Adds the scene to the page, if one is given. Returns the text for the output line, or an empty text."""
     from ..report.scene import shown_scene, words_of
+
     if not options.scene:
         return ""
     scene = shown_scene(program, words_of(options.scene, options), options.output)
@@ -58,14 +66,20 @@ def _add_scene(page, options, program):
 def _write(options, program):
     """Writes the page and returns the output line. Raises scene.ExportEnded and the errors that run() handles."""
     from ..report.assembly import html_of, open_page, write_page
+
     if options.against and len(options.files) != 1:
-        raise BadUse(f"--against {options.against}: two sets of records are compared; give one FILE beside it")
-    check_output(options.output, [*options.files, *filter(None, (options.against, options.scene))], ".partial")
+        raise BadUse(
+            f"--against {options.against}: two sets of records are compared; give one FILE beside it"
+        )
+    check_output(
+        options.output, [*options.files, *filter(None, (options.against, options.scene))], ".partial"
+    )
     page = open_page("Report of tandem", True, bool(options.scene), program, "tandem report")
     check_packages("tandem report", ("numpy",))
     from ..report.data import data_of, size_of
     from ..report.differences import differences
     from ..report.reading import read_records
+
     records, empty = read_records(options.files), size_of(html_of(page))
     if options.against:
         page.data["differences"] = differences(options.against, options.files[0], records.cells)
@@ -82,6 +96,7 @@ def _write(options, program):
 
 def _make(options, program):
     from ..report.scene import ExportEnded
+
     try:
         return _write(options, program), 0
     except ExportEnded as ended:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """tandem view: writes a three-dimensional view of a scene as a page for a browser."""
+
 import argparse
 import re
 
@@ -39,7 +40,10 @@ def _make(options, program):
     if not options.output:
         check_output(path, (), ".partial")
     written = write_page(path, page)
-    return f"{path}: {scene.frames} {'frame' if scene.frames == 1 else 'frames'} of {scene.key}, {written / 1e6:.1f} MB\n", 0
+    return (
+        f"{path}: {scene.frames} {'frame' if scene.frames == 1 else 'frames'} of {scene.key}, {written / 1e6:.1f} MB\n",
+        0,
+    )
 
 
 def main(arguments, program):

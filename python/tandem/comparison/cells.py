@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Reads those fields of records of cells that are compared. results/record.schema.json describes the fields."""
+"""Reads those fields of records of cells that are compared. results/record.schema.json describes the
+fields."""
+
 import dataclasses
 import os
 import statistics
@@ -14,6 +16,7 @@ NAMES_OF = {str: "string", int: "number", bool: "truth value"}
 @dataclasses.dataclass(frozen=True)
 class Answer:
     """The digest of pairs or contacts."""
+
     count: int
     a: str
     b: str
@@ -21,13 +24,16 @@ class Answer:
 
 @dataclasses.dataclass
 class RecordedCell:
-    """A record of one cell. `frames`: number of frames in a sample. `names`: texts that name the cell, the most significant first.
-    `settings`: includes the parameters of its scene. `rounds`: the median of each round in nanoseconds, by ascending number; with schema 2
-    each sample is a round. `pairs` and `contacts` are None if the record has no digest. `sources`: the digest of the program's sources.
-    `disturbed`: those of the rounds in which the record calls the machine disturbed; `reason`: the first reason. Unknown texts are empty.
+    """A record of one cell. `frames`: number of frames in a sample. `names`: texts that name the cell, the
+    most significant first. `settings`: includes the parameters of its scene. `rounds`: the median of each
+    round in nanoseconds, by ascending number; with schema 2 each sample is a round. `pairs` and `contacts`
+    are None if the record has no digest. `sources`: the digest of the program's sources. `disturbed`: those
+    of the rounds in which the record calls the machine disturbed; `reason`: the first reason. Unknown texts
+    are empty.
 
-    A cell of several records (pooling.py) has `sessions` > 0: then `rounds` and `disturbed` have sessions instead of rounds. `all_rounds` and
-    `disturbed_rounds` count rounds in both cases."""
+    A cell of several records (pooling.py) has `sessions` > 0: then `rounds` and `disturbed` have sessions
+    instead of rounds. `all_rounds` and `disturbed_rounds` count rounds in both cases."""
+
     line: int
     schema: int
     key: str
@@ -66,10 +72,12 @@ class RecordedCell:
 
 @dataclasses.dataclass
 class RecordedCells:
-    """The records of one file, or of one commit in it. `commit`: the full commit, if one was given. `cells`: one for each key with records
-    that are ok, in the order of the keys' first lines. `left_out`: records that failed, are wrong or have no samples. `repeated`: number of
-    keys of which some records that are ok do not count. `torn`: the last line has no end and is ignored. `pooled`: number of keys of which
-    several sessions count. `is_program`: `path` is that of a program, which turns.py measured."""
+    """The records of one file, or of one commit in it. `commit`: the full commit, if one was given. `cells`:
+    one for each key with records that are ok, in the order of the keys' first lines. `left_out`: records that
+    failed, are wrong or have no samples. `repeated`: number of keys of which some records that are ok do not
+    count. `torn`: the last line has no end and is ignored. `pooled`: number of keys of which several sessions
+    count. `is_program`: `path` is that of a program, which turns.py measured."""
+
     path: str
     commit: str
     cells: list
@@ -106,8 +114,8 @@ def _joined(devices, field):
 
 
 def _split_scene(key, settings):
-    """Splits "NAME:par=value,par=value" into the scene's name and its parameters. The name is the whole key if a part is not a parameter, or
-    has the name of a setting."""
+    """Splits "NAME:par=value,par=value" into the scene's name and its parameters. The name is the whole key
+    if a part is not a parameter, or has the name of a setting."""
     name, colon, rest = key.partition(":")
     parameters = dict(part.partition("=")[::2] for part in rest.split(",")) if colon else {}
     if not all("=" in part for part in rest.split(",") if colon) or parameters.keys() & settings.keys():
@@ -131,9 +139,17 @@ def _names(record):
     devices, frames, scene = record["devices"], record["frames"], record["scene"]
     scene_name, parameters = _split_scene(_needed(scene, "key"), settings)
     span = f"frames {_needed(frames, 'first', int)}:{_needed(frames, 'last', int)}"
-    names = {"algorithm": _needed(record, "algorithm"), "preset": _needed(record, "preset"), "devices": _joined(devices, "id"),
-             "model": _joined(devices, "name"), "driver": _joined(devices, "driver"), "scene": scene_name, "frames": span,
-             "handling": _handling(record), "digest": f"digest {_needed(scene, 'digest')}"}
+    names = {
+        "algorithm": _needed(record, "algorithm"),
+        "preset": _needed(record, "preset"),
+        "devices": _joined(devices, "id"),
+        "model": _joined(devices, "name"),
+        "driver": _joined(devices, "driver"),
+        "scene": scene_name,
+        "frames": span,
+        "handling": _handling(record),
+        "digest": f"digest {_needed(scene, 'digest')}",
+    }
     return names, settings | parameters
 
 
@@ -142,7 +158,9 @@ def _answer(record, name):
     for field in ("work", "agreement"):
         part = record.get(field)
         if isinstance(part, dict) and name in part:
-            return Answer(_needed(part[name], "count", int), _needed(part[name], "a"), _needed(part[name], "b"))
+            return Answer(
+                _needed(part[name], "count", int), _needed(part[name], "a"), _needed(part[name], "b")
+            )
     return None
 
 
@@ -175,14 +193,32 @@ def _cell(record, line):
     devices, frames, environment = record["devices"], record["frames"], record["environment"]
     seed = (record.get("sampling") or {}).get("seed")
     return RecordedCell(
-        line=line, schema=record["schema"], key=_needed(record, "key"), status=_needed(record, "status"), failure=_text(record, "failure"),
-        names=names, settings=settings, frames=frames["last"] - frames["first"] + 1,
-        on_gpus=bool(devices) and all(device["kind"] == "gpu" for device in devices), session=_text(record, "session"),
-        seed=seed if isinstance(seed, int) else None, samples=samples, rounds=rounds, pairs=_answer(record, "digest"),
-        contacts=_answer(record, "contact_digest"), commit=_text(environment, "commit"), processor=_text(environment, "processor"),
-        dirty=_needed(environment, "dirty", bool), chosen=record.get("chosen") is not None, sources=_text(environment, "sources"),
-        disturbed=disturbed, reason=reason, all_rounds=len(rounds), disturbed_rounds=len(disturbed),
-        is_partial=lines.is_partial(record))
+        line=line,
+        schema=record["schema"],
+        key=_needed(record, "key"),
+        status=_needed(record, "status"),
+        failure=_text(record, "failure"),
+        names=names,
+        settings=settings,
+        frames=frames["last"] - frames["first"] + 1,
+        on_gpus=bool(devices) and all(device["kind"] == "gpu" for device in devices),
+        session=_text(record, "session"),
+        seed=seed if isinstance(seed, int) else None,
+        samples=samples,
+        rounds=rounds,
+        pairs=_answer(record, "digest"),
+        contacts=_answer(record, "contact_digest"),
+        commit=_text(environment, "commit"),
+        processor=_text(environment, "processor"),
+        dirty=_needed(environment, "dirty", bool),
+        chosen=record.get("chosen") is not None,
+        sources=_text(environment, "sources"),
+        disturbed=disturbed,
+        reason=reason,
+        all_rounds=len(rounds),
+        disturbed_rounds=len(disturbed),
+        is_partial=lines.is_partial(record),
+    )
 
 
 def recorded_cell(record, path, line):
@@ -192,9 +228,13 @@ def recorded_cell(record, path, line):
     except _NotARecord as problem:
         raise lines.RecordError(f"{path}:{line}: {problem}") from None
     except KeyError as problem:
-        raise lines.RecordError(f"{path}:{line}: is no record of a cell (it has no {problem.args[0]}); {lines.WHAT_TO_GIVE}") from None
+        raise lines.RecordError(
+            f"{path}:{line}: is no record of a cell (it has no {problem.args[0]}); {lines.WHAT_TO_GIVE}"
+        ) from None
     except (TypeError, AttributeError, ValueError) as problem:
-        raise lines.RecordError(f"{path}:{line}: is no record of a cell ({problem}); {lines.WHAT_TO_GIVE}") from None
+        raise lines.RecordError(
+            f"{path}:{line}: is no record of a cell ({problem}); {lines.WHAT_TO_GIVE}"
+        ) from None
 
 
 def _split_commit(file, commit):
@@ -206,7 +246,9 @@ def _split_commit(file, commit):
     if not behind:
         raise lines.RecordError(f"{name}: no such file, and no commit behind the @; give FILE@COMMIT")
     if commit:
-        raise lines.RecordError(f"{name}: the option names another commit, {commit}; name one commit, behind the @ or by the option")
+        raise lines.RecordError(
+            f"{name}: the option names another commit, {commit}; name one commit, behind the @ or by the option"
+        )
     return path, behind
 
 
@@ -226,13 +268,15 @@ def _whole_commit(path, start, cells):
 
 
 def read_cells(file, commit=""):
-    """Reads RecordedCells of a file, given as PATH or PATH@COMMIT. `commit`, or the text behind the @, is the beginning of the commit whose
-    records count; without it all records count. Raises RecordError."""
+    """Reads RecordedCells of a file, given as PATH or PATH@COMMIT. `commit`, or the text behind the @, is the
+    beginning of the commit whose records count; without it all records count. Raises RecordError."""
     path, start = _split_commit(file, commit)
     torn = []
     records = [recorded_cell(record, path, line) for line, record in lines.numbered(path, torn.append)]
     if not records:
-        raise lines.RecordError(f"{path}: {'its only line has no end' if torn else 'has no record of a cell'}; name a file of records")
+        raise lines.RecordError(
+            f"{path}: {'its only line has no end' if torn else 'has no record of a cell'}; name a file of records"
+        )
     if start:
         start = _whole_commit(path, start, records)
         records = [cell for cell in records if cell.commit == start]
@@ -245,5 +289,14 @@ def read_cells(file, commit=""):
     counted = {key: counting(found) for key, found in by_key.items()}
     kept = [pooled(found) if len(found) > 1 else found[0] for found in counted.values()]
     repeated = sum(len(counted[key]) < len(found) for key, found in by_key.items())
-    return RecordedCells(path, start, kept, left_out, _commits(kept), len(records), repeated, bool(torn),
-                         sum(len(found) > 1 for found in counted.values()))
+    return RecordedCells(
+        path,
+        start,
+        kept,
+        left_out,
+        _commits(kept),
+        len(records),
+        repeated,
+        bool(torn),
+        sum(len(found) > 1 for found in counted.values()),
+    )

@@ -32,8 +32,9 @@ def _numbered(cells, labels):
 
 
 def label(cells):
-    """A text for each RecordedCell, in order, and one text with the values that all share. Texts of different keys differ. A text has those
-    names, and then those settings in alphabetical order, that distinguish cells which the values before do not."""
+    """A text for each RecordedCell, in order, and one text with the values that all share. Texts of different
+    keys differ. A text has those names, and then those settings in alphabetical order, that distinguish cells
+    which the values before do not."""
     if not cells:
         return [], ""
     growing, common = _Growing(len(cells)), []
@@ -42,7 +43,9 @@ def label(cells):
         if name != LAST and not growing.add(texts) and len(set(texts)) == 1 and first:
             common.append(first)
     for setting in sorted({name for cell in cells for name in cell.settings}):
-        growing.add([f"{setting}={cell.settings[setting]}" if setting in cell.settings else "" for cell in cells])
+        growing.add(
+            [f"{setting}={cell.settings[setting]}" if setting in cell.settings else "" for cell in cells]
+        )
     growing.add([cell.names[LAST] for cell in cells])
     labels = [text or cells[0].names["algorithm"] for text in growing.labels]
     return _numbered(cells, labels), ", ".join(common)

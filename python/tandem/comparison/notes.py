@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Sentences about a comparison: notes on files and cells, the summary, and the reason if nothing can be compared."""
+"""Sentences about a comparison: notes on files and cells, the summary, and the reason if nothing can be
+compared."""
+
 import os
 
 from ..text_lines import one_line
@@ -9,21 +11,34 @@ MAX_LEFT_OUT, MAX_ONLY, MAX_TRIED, MAX_DIFFERENCES = 10, 5, 300, 4
 
 
 def _names(before, after, matched):
-    """Distinct labels of all cells of both files by identity, including cells without a counterpart and cells left out."""
-    cells = [*(cell.before for cell in matched.cells), *matched.only_old, *matched.only_new, *before.left_out, *after.left_out]
+    """Distinct labels of all cells of both files by identity, including cells without a counterpart and cells
+    left out."""
+    cells = [
+        *(cell.before for cell in matched.cells),
+        *matched.only_old,
+        *matched.only_new,
+        *before.left_out,
+        *after.left_out,
+    ]
     return {id(cell): one_line(text, 1000) for cell, text in zip(cells, label(cells)[0])}
 
 
 def _change(what, before, after):
     if before is None or after is None or before == after:
         return []
-    return [f"{before.count} {what}, but different ones" if before.count == after.count else f"{after.count} {what} instead of {before.count}"]
+    return [
+        f"{before.count} {what}, but different ones"
+        if before.count == after.count
+        else f"{after.count} {what} instead of {before.count}"
+    ]
 
 
 def _answer_notes(matched, names):
     for cell in matched.cells:
         if cell.verdict == "another_answer":
-            changes = _change("candidate pairs", cell.before.pairs, cell.after.pairs) + _change("contacts", cell.before.contacts, cell.after.contacts)
+            changes = _change("candidate pairs", cell.before.pairs, cell.after.pairs) + _change(
+                "contacts", cell.before.contacts, cell.after.contacts
+            )
             yield f"another answer: {names[id(cell.before)]}: {', '.join(changes)}"
 
 
@@ -31,8 +46,10 @@ def _file_notes(side):
     if side.torn:
         yield f"{side.path}: the last line has no end and is ignored; it is cut off or still being written"
     if side.repeated:
-        yield (f"{side.path}: {side.repeated} {'cell was' if side.repeated == 1 else 'cells were'} recorded more than once; "
-               "the last record that is ok counts, with those of other sessions of its program")
+        yield (
+            f"{side.path}: {side.repeated} {'cell was' if side.repeated == 1 else 'cells were'} recorded more than once; "
+            "the last record that is ok counts, with those of other sessions of its program"
+        )
 
 
 def _reason(cell):
@@ -60,9 +77,13 @@ def _only_notes(which, cells, names):
 def _machine_notes(matched):
     """Differences of machines: keys of schema 2 do not contain them."""
     for name in ("model", "driver", "processor"):
+
         def values(side):
             cells = (getattr(cell, side) for cell in matched.cells)
-            return sorted({(cell.processor or "unknown") if name == "processor" else cell.names[name] for cell in cells})
+            return sorted(
+                {(cell.processor or "unknown") if name == "processor" else cell.names[name] for cell in cells}
+            )
+
         old, new = values("before"), values("after")
         if old != new:
             yield f"other {name}s: old {' and '.join(old)}, new {' and '.join(new)}"
@@ -72,12 +93,14 @@ def _separate_run_notes(matched):
     """Only within a session are both sides measured under the same load of the machine."""
     separate = sum(not cell.paired and not cell.before.sessions for cell in matched.cells)
     if separate:
-        yield (f"{separate} of {len(matched.cells)} cells were measured in separate runs: load, clocks and preparation of each run count "
-               "as changes")
+        yield (
+            f"{separate} of {len(matched.cells)} cells were measured in separate runs: load, clocks and preparation of each run count "
+            "as changes"
+        )
 
 
 def _range(numbers):
-    """"10", or "8 to 10"."""
+    """ "10", or "8 to 10"."""
     low, high = min(numbers), max(numbers)
     return f"{low}" if low == high else f"{low} to {high}"
 
@@ -86,8 +109,10 @@ def _session_notes(matched):
     """A cell of several sessions is compared by them."""
     pooled = [cell for cell in matched.cells if cell.before.sessions]
     if pooled:
-        counts = " and ".join(f"{_range([getattr(cell, side).sessions for cell in pooled])} of {name}"
-                              for side, name in (("before", "old"), ("after", "new")))
+        counts = " and ".join(
+            f"{_range([getattr(cell, side).sessions for cell in pooled])} of {name}"
+            for side, name in (("before", "old"), ("after", "new"))
+        )
         yield f"{len(pooled)} {'cell is' if len(pooled) == 1 else 'cells are'} compared by sessions: {counts}"
 
 
@@ -121,8 +146,11 @@ def notes(before, after, matched):
     found = list(_answer_notes(matched, names))
     same_commit = before.commit == after.commit
     if same_commit and _same_file(before.path, after.path):
-        found.append("old and new are the same program" if before.is_program else
-                     "old and new are the same records; FILE@COMMIT names those of one commit")
+        found.append(
+            "old and new are the same program"
+            if before.is_program
+            else "old and new are the same records; FILE@COMMIT names those of one commit"
+        )
     found += _file_notes(before)
     if before.path != after.path or not same_commit:
         found += _file_notes(after)
@@ -130,12 +158,18 @@ def notes(before, after, matched):
         found += _left_out_notes(side, names)
     found += _only_notes("old", matched.only_old, names)
     found += _only_notes("new", matched.only_new, names)
-    return [*found, *_machine_notes(matched), *_session_notes(matched), *_separate_run_notes(matched), *_interval_notes(matched),
-            *_disturbed_notes(matched)]
+    return [
+        *found,
+        *_machine_notes(matched),
+        *_session_notes(matched),
+        *_separate_run_notes(matched),
+        *_interval_notes(matched),
+        *_disturbed_notes(matched),
+    ]
 
 
 def _thresholds(matched):
-    """"3 %", or both default thresholds with their kinds of device."""
+    """ "3 %", or both default thresholds with their kinds of device."""
     found = sorted({cell.threshold for cell in matched.cells})
     texts = [f"{100 * threshold:g} %" for threshold in (found[0], found[-1])]
     return texts[0] if len(found) == 1 else f"{texts[0]} (GPUs) or {texts[1]} (processors)"
@@ -146,12 +180,14 @@ def _too_few(matched):
     if not few:
         return ""
     unit = "sessions" if any(cell.before.sessions for cell in few) else "rounds"
-    return (f"; {len(few)} {'has' if len(few) == 1 else 'have'} too few samples to tell: {max(cell.rounds_needed for cell in few)} {unit} "
-            "on each side are enough")
+    return (
+        f"; {len(few)} {'has' if len(few) == 1 else 'have'} too few samples to tell: {max(cell.rounds_needed for cell in few)} {unit} "
+        "on each side are enough"
+    )
 
 
 def _detectable(matched):
-    """"; detectable in the others: 0.8 to 2.1 %"."""
+    """ "; detectable in the others: 0.8 to 2.1 %"."""
     undecided = [cell for cell in matched.cells if cell.verdict in ("not_shown", "within_threshold")]
     effects = [100 * cell.least_effect for cell in undecided if cell.least_effect is not None]
     if not effects:
@@ -162,10 +198,15 @@ def _detectable(matched):
 
 
 def summary(matched, level):
-    """One line: numbers of slower and faster cells, the threshold, and the changes that are detectable in the other cells."""
-    answers, within, disturbed = (matched.count(verdict) for verdict in ("another_answer", "within_threshold", "disturbed"))
-    text = (f"{matched.count('slower')} of {len(matched.cells)} {'cell' if len(matched.cells) == 1 else 'cells'} slower, "
-            f"{matched.count('faster')} faster beyond {_thresholds(matched)} at level {level:g}")
+    """One line: numbers of slower and faster cells, the threshold, and the changes that are detectable in the
+    other cells."""
+    answers, within, disturbed = (
+        matched.count(verdict) for verdict in ("another_answer", "within_threshold", "disturbed")
+    )
+    text = (
+        f"{matched.count('slower')} of {len(matched.cells)} {'cell' if len(matched.cells) == 1 else 'cells'} slower, "
+        f"{matched.count('faster')} faster beyond {_thresholds(matched)} at level {level:g}"
+    )
     if answers:
         text += f"; {answers} with another answer"
     if within:
@@ -176,22 +217,31 @@ def summary(matched, level):
 
 
 def _device_differences(before, after):
-    """"X / Y" for the parts in which the devices of two keys differ, such as "host:CPU x1 / host:CPU x2": keys have the number of cores, which no
-    name has. Nothing if names show the difference, and for keys of old schemas, which have no devices."""
-    if any(before.names[name] != after.names[name] for name in ("devices", "model", "driver")) or not before.key.count("|") == after.key.count("|") >= 4:
+    """ "X / Y" for the parts in which the devices of two keys differ, such as "host:CPU x1 / host:CPU x2":
+    keys have the number of cores, which no name has. Nothing if names show the difference, and for keys of
+    old schemas, which have no devices."""
+    if (
+        any(before.names[name] != after.names[name] for name in ("devices", "model", "driver"))
+        or not before.key.count("|") == after.key.count("|") >= 4
+    ):
         return []
     pairs = zip(*(cell.key.split("|")[1].split(", ") for cell in (before, after)))
     return [f"{old} / {new}" for old, new in pairs if old != new]
 
 
 def _differences(before, after):
-    """"X / Y" for each name, each setting and each part of the devices in which two cells differ. Presets are left out, because keys do not
-    contain them."""
-    found = [f"{value} / {after.names[name]}" for name, value in before.names.items() if name != "preset" and value != after.names[name]]
+    """ "X / Y" for each name, each setting and each part of the devices in which two cells differ. Presets are
+    left out, because keys do not contain them."""
+    found = [
+        f"{value} / {after.names[name]}"
+        for name, value in before.names.items()
+        if name != "preset" and value != after.names[name]
+    ]
     found += _device_differences(before, after)
 
     def text(cell, name):
         return f"{name}={cell.settings[name]}" if name in cell.settings else f"no {name}"
+
     for name in sorted(before.settings.keys() | after.settings.keys()):
         if text(before, name) != text(after, name):
             found.append(f"{text(before, name)} / {text(after, name)}")
@@ -199,8 +249,8 @@ def _differences(before, after):
 
 
 def nothing_common(before, after):
-    """The reason why two RecordedCells have no cell in common: the differences of the two most similar cells. Tries at most MAX_TRIED cells
-    of each."""
+    """The reason why two RecordedCells have no cell in common: the differences of the two most similar cells.
+    Tries at most MAX_TRIED cells of each."""
     for side in (before, after):
         if not side.cells:
             name = f"{side.path}@{side.commit}" if side.commit else side.path
@@ -209,7 +259,10 @@ def nothing_common(before, after):
     schemas = before.cells[0].schema, after.cells[0].schema
     if schemas[0] != schemas[1]:
         return f"{what}), because they have schemas {schemas[0]} and {schemas[1]}; record both with one version of the program"
-    least = min((_differences(old, new) for old in before.cells[:MAX_TRIED] for new in after.cells[:MAX_TRIED]), key=len)
+    least = min(
+        (_differences(old, new) for old in before.cells[:MAX_TRIED] for new in after.cells[:MAX_TRIED]),
+        key=len,
+    )
     if len(least) > MAX_DIFFERENCES:
         least = [*least[:MAX_DIFFERENCES], f"{len(least) - MAX_DIFFERENCES} more"]
     return f"{what}; the nearest differ in {', '.join(least)}); record the same cells"

@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: MIT
-"""Pools the records that several sessions made of one cell. Rounds of a session share the process, its memory and the state of the machine,
-so that they differ less than sessions do: a test over all rounds would find changes where there are none. The unit is then the session."""
+"""Pools the records that several sessions made of one cell. Rounds of a session share the process, its memory
+and the state of the machine, so that they differ less than sessions do: a test over all rounds would find
+changes where there are none. The unit is then the session."""
+
 import dataclasses
 import statistics
 
 
 def counting(cells):
-    """Those of the RecordedCells of one key, in the order of their lines, that count: the sessions of the program that wrote the last one.
-    The last record of a session counts, because it continues the ones before. Records without a session count as one session. The record of
-    an interrupted cell counts only if it is the last one: a later session has continued the cell, or measured it again."""
+    """Those of the RecordedCells of one key, in the order of their lines, that count: the sessions of the
+    program that wrote the last one. The last record of a session counts, because it continues the ones
+    before. Records without a session count as one session. The record of an interrupted cell counts only if
+    it is the last one: a later session has continued the cell, or measured it again."""
     found = {}
     for cell in cells:
         if cell.program == cells[-1].program and (not cell.is_partial or cell is cells[-1]):
@@ -18,8 +21,8 @@ def counting(cells):
 
 
 def is_minority(disturbed, rounds):
-    """Whether so many disturbed rounds of all rounds can be left out. Other work that disturbs half of them also meets others: the condition of
-    short rounds is known only roughly."""
+    """Whether so many disturbed rounds of all rounds can be left out. Other work that disturbs half of them
+    also meets others: the condition of short rounds is known only roughly."""
     return 2 * disturbed < rounds
 
 
@@ -30,9 +33,16 @@ def _time(cell):
 
 
 def pooled(cells):
-    """One RecordedCell whose `rounds` are these sessions. A session is disturbed if at least half of its rounds are."""
+    """One RecordedCell whose `rounds` are these sessions. A session is disturbed if at least half of its
+    rounds are."""
     bad = [cell for cell in cells if not is_minority(len(cell.disturbed), len(cell.rounds))]
     return dataclasses.replace(
-        cells[-1], rounds={cell.session: _time(cell) for cell in cells}, disturbed=frozenset(cell.session for cell in bad),
-        reason=next((cell.reason for cell in cells if cell.reason), ""), sessions=len(cells), samples=sum(cell.samples for cell in cells),
-        all_rounds=sum(cell.all_rounds for cell in cells), disturbed_rounds=sum(cell.disturbed_rounds for cell in cells))
+        cells[-1],
+        rounds={cell.session: _time(cell) for cell in cells},
+        disturbed=frozenset(cell.session for cell in bad),
+        reason=next((cell.reason for cell in cells if cell.reason), ""),
+        sessions=len(cells),
+        samples=sum(cell.samples for cell in cells),
+        all_rounds=sum(cell.all_rounds for cell in cells),
+        disturbed_rounds=sum(cell.disturbed_rounds for cell in cells),
+    )

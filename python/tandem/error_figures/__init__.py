@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""python3 -m tandem.error_figures FILE.jsonl[.xz] ... FOLDER: draws records with errors against the truth (tandem accuracy) as three figures,
-and writes their data beside them.
+"""python3 -m tandem.error_figures FILE.jsonl[.xz] ... FOLDER: draws records with errors against the truth
+(tandem accuracy) as three figures, and writes their data beside them.
 
-pareto: time over candidates per meeting pair, and over the 99th percentiles of depth and normal error, with names of Pareto-optimal cells.
-cliffs: errors over difficulty of hard scenes. bars: missed and false pairs and time by kind of scene. Labels have the settings that differ. A
-panel without data has a text with the reason. Other records of tandem, and cells that failed or are wrong, are left out.
+pareto: time over candidates per meeting pair, and over the 99th percentiles of depth and normal error, with
+names of Pareto-optimal cells. cliffs: errors over difficulty of hard scenes. bars: missed and false pairs and
+time by kind of scene. Labels have the settings that differ. A panel without data has a text with the reason.
+Other records of tandem, and cells that failed or are wrong, are left out.
 
-Exits with 2 and one error line for a file without records and if nothing can be drawn, with 3 if figures cannot be written. Needs
-python3-matplotlib."""
+Exits with 2 and one error line for a file without records and if nothing can be drawn, with 3 if figures
+cannot be written. Needs python3-matplotlib."""
+
 import argparse
 import pathlib
 
@@ -16,7 +18,11 @@ from ..errors import BadUse, OutputError
 
 
 def _parsed(arguments):
-    parser = Parser(prog="python3 -m tandem.error_figures", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = Parser(
+        prog="python3 -m tandem.error_figures",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     parser.add_argument("files", nargs="+", metavar="FILE")
     parser.add_argument("folder", metavar="FOLDER", type=pathlib.Path)
     return parser.parse_args(arguments)
@@ -26,6 +32,7 @@ def draw(files, folder):
     """Draws the records of these files. Returns the output line. Raises RecordError, BadUse and OutputError."""
     from .drawing import figures
     from .points import read
+
     points, left_out = read(files, warn)
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -35,7 +42,11 @@ def draw(files, folder):
         names, more = figures(points, folder)
     except OSError as problem:
         raise OutputError(f"cannot write to {folder}: {problem.strerror}") from None
-    return f"{len(points)} records drawn: {names} in {folder}{more}" + (f"; {left_out} failed, wrong or untimed left out" if left_out else "") + "\n"
+    return (
+        f"{len(points)} records drawn: {names} in {folder}{more}"
+        + (f"; {left_out} failed, wrong or untimed left out" if left_out else "")
+        + "\n"
+    )
 
 
 def _make(arguments):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Errors over difficulty, one panel per family of hard scenes."""
+
 import textwrap
 
 import matplotlib.pyplot as plt
@@ -9,7 +10,9 @@ from .points import OF_CONTACTS, sweep_text, swept
 
 
 def _rule_of(point):
-    return " ".join(point.settings[s] for s in ("contact_rule", "decision", "precision") if s in point.settings)
+    return " ".join(
+        point.settings[s] for s in ("contact_rule", "decision", "precision") if s in point.settings
+    )
 
 
 def _worst(points):
@@ -22,10 +25,22 @@ def _worst(points):
 
 def _lines(own, bounds_of, bounds, rules):
     """The lines of a panel, each as (style, label, points)."""
-    made = [(f"C{i % 10}-o", f"missed, {name}", _worst((p.difficulty, p.missed / max(p.meeting, 1)) for p in own if bounds_of(p) == name))
-            for i, name in enumerate(bounds)]
-    made += [(f"C{5 + i % 5}--", f"depth, {name}", _worst((p.difficulty, p.depth) for p in own if _rule_of(p) == name and p.depth is not None))
-             for i, name in enumerate(rules)]
+    made = [
+        (
+            f"C{i % 10}-o",
+            f"missed, {name}",
+            _worst((p.difficulty, p.missed / max(p.meeting, 1)) for p in own if bounds_of(p) == name),
+        )
+        for i, name in enumerate(bounds)
+    ]
+    made += [
+        (
+            f"C{5 + i % 5}--",
+            f"depth, {name}",
+            _worst((p.difficulty, p.depth) for p in own if _rule_of(p) == name and p.depth is not None),
+        )
+        for i, name in enumerate(rules)
+    ]
     return [line for line in made if line[2]]
 
 
@@ -57,10 +72,16 @@ def _families(points):
 
 
 def _title(figure, axes, points, bounds_settings, columns):
-    handles = {label: handle for panel in axes.flat for handle, label in zip(*panel.get_legend_handles_labels())}
-    figure.legend(handles.values(), handles.keys(), loc="lower center", ncol=6, fontsize=7, bbox_to_anchor=(0.5, 1.0))
+    handles = {
+        label: handle for panel in axes.flat for handle, label in zip(*panel.get_legend_handles_labels())
+    }
+    figure.legend(
+        handles.values(), handles.keys(), loc="lower center", ncol=6, fontsize=7, bbox_to_anchor=(0.5, 1.0)
+    )
     rest = sweep_text(swept(points, (*bounds_settings, *OF_CONTACTS)))
-    text = "difficulty; solid: share of meeting pairs missed; dashed: depth error (99th percentile, / L)" + (f"; worst over {rest}" if rest else "")
+    text = "difficulty; solid: share of meeting pairs missed; dashed: depth error (99th percentile, / L)" + (
+        f"; worst over {rest}" if rest else ""
+    )
     figure.supxlabel("\n".join(textwrap.wrap(text, 40 * columns)), fontsize=8)
 
 
@@ -74,8 +95,10 @@ def draw(points):
     bounds_of = lambda p: " ".join(p.settings[name] for name in bounds_settings if name in p.settings)
     columns = min(4, len(families))
     rows = -(-len(families) // columns)
-    figure, axes = plt.subplots(rows, columns, figsize=(3 * columns, 1.9 * rows), squeeze=False, layout="constrained")
-    for panel in axes.flat[len(families):]:
+    figure, axes = plt.subplots(
+        rows, columns, figsize=(3 * columns, 1.9 * rows), squeeze=False, layout="constrained"
+    )
+    for panel in axes.flat[len(families) :]:
         panel.axis("off")
     # Equal bounds and rules have equal colours in all families.
     bounds, rules = sorted({bounds_of(p) for p in points}), sorted({_rule_of(p) for p in points})

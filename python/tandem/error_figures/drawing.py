@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Draws all figures and writes their data beside them."""
+
 import csv
 
 import matplotlib
@@ -11,13 +12,19 @@ from . import bars, cliffs, pareto
 from .points import swept
 
 SHOWN = ("k", "axes", "precision", "rounding", "decision", "contact_rule")
-STYLE = {"svg.hashsalt": "tandem", "font.size": 8, "axes.grid": True, "grid.alpha": 0.3, "legend.frameon": False}
+STYLE = {
+    "svg.hashsalt": "tandem",
+    "font.size": 8,
+    "axes.grid": True,
+    "grid.alpha": 0.3,
+    "legend.frameon": False,
+}
 
 
 def _write_data(path, points):
     settings = [*SHOWN, *(name for name in swept(points, ("cell", "device")) if name not in SHOWN)]
     row = list(points[0].row())
-    first, last = row[:row.index("cell") + 1], row[row.index("ms"):]
+    first, last = row[: row.index("cell") + 1], row[row.index("ms") :]
     with open(path, "w", newline="") as file:
         writer = csv.DictWriter(file, [*first, *settings, *last], extrasaction="ignore", restval="")
         writer.writeheader()
@@ -38,10 +45,17 @@ def _save(folder, name, drawn):
 
 
 def figures(points, folder):
-    """Draws all figures. Returns a text with their names, and one about scenes that are not drawn. Raises OSError."""
+    """Draws all figures. Returns a text with their names, and one about scenes that are not drawn. Raises
+    OSError."""
     matplotlib.use("svg")
     with matplotlib.rc_context(STYLE):
         figures_by_name = {"bars": bars, "cliffs": cliffs, "pareto": pareto}
-        names = [file for name, module in figures_by_name.items() for file in _save(folder, name, module.draw(points))]
+        names = [
+            file
+            for name, module in figures_by_name.items()
+            for file in _save(folder, name, module.draw(points))
+        ]
     scenes = len(pareto.scenes_of(points))
-    return ", ".join(names), f"; pareto has the first {pareto.MAX_SCENES} scenes of {scenes}" if scenes > pareto.MAX_SCENES else ""
+    return ", ".join(
+        names
+    ), f"; pareto has the first {pareto.MAX_SCENES} scenes of {scenes}" if scenes > pareto.MAX_SCENES else ""

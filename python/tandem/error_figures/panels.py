@@ -1,11 +1,22 @@
 # SPDX-License-Identifier: MIT
 """Functions for panels of several figures."""
+
 import matplotlib.ticker
 
 
 def note(panel, text):
     """Writes a text into an empty panel."""
-    panel.text(0.5, 0.5, text, transform=panel.transAxes, ha="center", va="center", fontsize=7, color="0.4", wrap=True)
+    panel.text(
+        0.5,
+        0.5,
+        text,
+        transform=panel.transAxes,
+        ha="center",
+        va="center",
+        fontsize=7,
+        color="0.4",
+        wrap=True,
+    )
     panel.set(xticks=[], yticks=[])
 
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The paper's claims of statements/*.toml, and a verdict on each from the records of a folder."""
+
 import dataclasses
 import tomllib
 
@@ -12,8 +13,9 @@ from .rules import UNTESTED, VERDICTS, judged, together
 
 @dataclasses.dataclass(frozen=True)
 class Line:
-    """The verdict of one scene. label: the scene, with k if the claim has several; empty for a claim without scenes. paper: the paper's
-    numbers by device. reason: why it is not settled or untested."""
+    """The verdict of one scene. label: the scene, with k if the claim has several; empty for a claim without
+    scenes. paper: the paper's numbers by device. reason: why it is not settled or untested."""
+
     label: str
     verdict: str
     measured: object = None
@@ -24,6 +26,7 @@ class Line:
 @dataclasses.dataclass(frozen=True)
 class Claim:
     """fields: as declared. lines: one verdict for each scene. verdict: of the claim."""
+
     fields: dict
     lines: tuple
     verdict: str
@@ -71,7 +74,9 @@ def _with(verdict_and_reason, measured, paper):
 def judge(fields, folder):
     """A Claim with its verdicts from the records of a Folder."""
     claim = Declared(fields)
-    lines = tuple(line_of(claim, folder, scene, k) for scene in _scenes(fields) for k in fields.get("k", ["8"]))
+    lines = tuple(
+        line_of(claim, folder, scene, k) for scene in _scenes(fields) for k in fields.get("k", ["8"])
+    )
     return Claim(fields, lines, together([line.verdict for line in lines], fields.get("together", "all")))
 
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Common parts of the figures: size, colours, titles that state results, and the CSV file beside each."""
+
 import csv
 import dataclasses
 import textwrap
@@ -7,8 +8,18 @@ import textwrap
 import matplotlib
 
 matplotlib.use("svg")
-matplotlib.rcParams.update({"svg.hashsalt": "tandem", "svg.fonttype": "none", "savefig.dpi": 150, "font.size": 9, "legend.frameon": False, "axes.spines.top": False,
-                            "axes.spines.right": False, "font.family": "sans-serif"})
+matplotlib.rcParams.update(
+    {
+        "svg.hashsalt": "tandem",
+        "svg.fonttype": "none",
+        "savefig.dpi": 150,
+        "font.size": 9,
+        "legend.frameon": False,
+        "axes.spines.top": False,
+        "axes.spines.right": False,
+        "font.family": "sans-serif",
+    }
+)
 import matplotlib.pyplot as plt
 from matplotlib import ticker
 
@@ -18,8 +29,37 @@ from ..plots import COLOURS, INK, PALE, WINNER
 from .tables import short
 
 WIDTH = 6.6  # inches: readable on a phone in portrait format, two thirds of a printed page
-STAGES = ("transform", "refit", "broad", "seed", "traverse", "balance", "contact", "preprocess", "postprocess", "read", "write")
-COLOUR_OF = dict(zip(STAGES, ("#777777", "#56b4e9", "#999999", "#bbbbbb", "#0072b2", "#f0e442", "#009e73", "#cc79a7", "#66507a", "#e69f00", "#d55e00")))
+STAGES = (
+    "transform",
+    "refit",
+    "broad",
+    "seed",
+    "traverse",
+    "balance",
+    "contact",
+    "preprocess",
+    "postprocess",
+    "read",
+    "write",
+)
+COLOUR_OF = dict(
+    zip(
+        STAGES,
+        (
+            "#777777",
+            "#56b4e9",
+            "#999999",
+            "#bbbbbb",
+            "#0072b2",
+            "#f0e442",
+            "#009e73",
+            "#cc79a7",
+            "#66507a",
+            "#e69f00",
+            "#d55e00",
+        ),
+    )
+)
 COLOUR_OF |= {"solve": "#333333", "assemble": "#aaaaaa", "reduce": "#8c6d31", "move": "#dddddd"}
 
 
@@ -37,14 +77,23 @@ class Plot:
     def __init__(self, number, panels=1, height=3.2, columns=1):
         self.number = number
         rows = -(-panels // columns)
-        self.figure, axes = plt.subplots(rows, columns, figsize=(WIDTH, height * rows), layout="constrained", squeeze=False)
+        self.figure, axes = plt.subplots(
+            rows, columns, figsize=(WIDTH, height * rows), layout="constrained", squeeze=False
+        )
         self.axes = list(axes.flat)
         for spare in self.axes[panels:]:
             spare.set_visible(False)
         self.rows = []
 
     def save(self, folder, title):
-        self.figure.suptitle("\n".join(textwrap.wrap(title, 70)), x=0.01, ha="left", fontsize=10.5, fontweight="bold", color=INK)
+        self.figure.suptitle(
+            "\n".join(textwrap.wrap(title, 70)),
+            x=0.01,
+            ha="left",
+            fontsize=10.5,
+            fontweight="bold",
+            color=INK,
+        )
         save_svg(self.figure, folder / f"figure{self.number}.svg", metadata={"Date": None, "Title": title})
         plt.close(self.figure)
         write_rows(folder, self.number, self.rows)
@@ -69,12 +118,15 @@ def missing(folder, number, title, why):
 
 
 def log_axis(axis):
-    """A logarithmic axis with ticks at 1, 2 and 5 of each power of ten if it is short, so that it has several, and without exponents if there is room."""
+    """A logarithmic axis with ticks at 1, 2 and 5 of each power of ten if it is short, so that it has
+    several, and without exponents if there is room."""
     low, high = sorted(axis.get_view_interval())
     is_short = low > 0 and high / low < 300
     axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5) if is_short else (1,), numticks=12))
     if high < 1e6:
-        axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:,.0f}" if value >= 1 else f"{value:g}"))
+        axis.set_major_formatter(
+            ticker.FuncFormatter(lambda value, _: f"{value:,.0f}" if value >= 1 else f"{value:g}")
+        )
     axis.set_minor_locator(ticker.NullLocator())
 
 
@@ -86,7 +138,9 @@ def symlog_axis(ax, threshold):
 
 def legend_above(ax, ncols):
     """A legend above the axes, which the layout keeps whole."""
-    ax.legend(ncols=ncols, fontsize=8, loc="lower left", bbox_to_anchor=(0, 1), handlelength=1.2, columnspacing=1.2)
+    ax.legend(
+        ncols=ncols, fontsize=8, loc="lower left", bbox_to_anchor=(0, 1), handlelength=1.2, columnspacing=1.2
+    )
 
 
 def milliseconds(ax):

@@ -1,15 +1,38 @@
 # SPDX-License-Identifier: MIT
 """Figures 7, 8 and 12 to 14 from our records of frames, with the paper's numbers of Table 5 beside them."""
+
 import numpy
 
-from .drawing import COLOUR_OF, COLOURS, INK, PALE, STAGES, WINNER, Plot, legend_above, log_axis, milliseconds, missing
+from .drawing import (
+    COLOUR_OF,
+    COLOURS,
+    INK,
+    PALE,
+    STAGES,
+    WINNER,
+    Plot,
+    legend_above,
+    log_axis,
+    milliseconds,
+    missing,
+)
 from .folder import SCENES, STEPS_OF_PAPER, STEPS_OF_TABLES, number, paper_table
 from .methods import found, name_of, names
 from .tables import written
 
 MAX_COSTS = 6  # as in the paper
 GPU = "K40c"  # of the paper's devices, the one whose launch geometry preset published has
-ROWS_OF_5 = ("transform", "refit", "traverse", "contact", "balance", "preprocess", "postprocess", "read", "write")
+ROWS_OF_5 = (
+    "transform",
+    "refit",
+    "traverse",
+    "contact",
+    "balance",
+    "preprocess",
+    "postprocess",
+    "read",
+    "write",
+)
 
 
 def published(folder, algorithm):
@@ -22,14 +45,28 @@ def published(folder, algorithm):
 def of_paper(algorithm):
     """({stage: seconds}, launches) of a step of the paper's Table 5 on GPU, by scene."""
     rows = [row for row in paper_table(5) if row["gpu"] == GPU and row["algorithm"] == algorithm]
-    return {row["scene"]: ({stage: (number(row[f"{stage}_s"]) or 0) / STEPS_OF_TABLES for stage in ROWS_OF_5}, number(row["launches"]) / STEPS_OF_TABLES) for row in rows}
+    return {
+        row["scene"]: (
+            {stage: (number(row[f"{stage}_s"]) or 0) / STEPS_OF_TABLES for stage in ROWS_OF_5},
+            number(row["launches"]) / STEPS_OF_TABLES,
+        )
+        for row in rows
+    }
 
 
 def _figure7_rows(cases):
-    """(label, {stage: seconds a frame}, launches a frame, records) of our cells and of the paper, scene by scene."""
+    """(label, {stage: seconds a frame}, launches a frame, records) of our cells and of the paper, scene by
+    scene."""
     theirs, rows = of_paper("gproximity"), []
     for scene, case in cases.items():
-        rows.append((f"{scene}, ours", {stage: case.stage(stage) / case.frames for stage in STAGES}, case.release_launches / case.frames, case.locations[0]))
+        rows.append(
+            (
+                f"{scene}, ours",
+                {stage: case.stage(stage) / case.frames for stage in STAGES},
+                case.release_launches / case.frames,
+                case.locations[0],
+            )
+        )
         if scene in theirs:
             rows.append((f"{scene}, paper's {GPU}", *theirs[scene], "results/paper/table5.csv"))
     return rows
@@ -39,11 +76,18 @@ def figure7(folder):
     """The six largest costs of gProximity in percent, and its launches."""
     rows = _figure7_rows(published(folder, "gproximity"))
     if not rows:
-        return missing(folder.path, 7, "gProximity's bottlenecks", "no cell of gProximity published has completed")
+        return missing(
+            folder.path, 7, "gProximity's bottlenecks", "no cell of gProximity published has completed"
+        )
     plot = Plot(7, 2, 3.2)
     costs_panel, launches = plot.axes
-    percents = [{stage: 100 * seconds.get(stage, 0) / sum(seconds.values()) for stage in STAGES} for _, seconds, _, _ in rows]
-    costs = sorted(STAGES, key=lambda stage: sum(percent[stage] for percent in percents), reverse=True)[:MAX_COSTS]
+    percents = [
+        {stage: 100 * seconds.get(stage, 0) / sum(seconds.values()) for stage in STAGES}
+        for _, seconds, _, _ in rows
+    ]
+    costs = sorted(STAGES, key=lambda stage: sum(percent[stage] for percent in percents), reverse=True)[
+        :MAX_COSTS
+    ]
     left = numpy.zeros(len(rows))
     for stage in costs:
         part = numpy.array([percent[stage] for percent in percents])
@@ -51,26 +95,52 @@ def figure7(folder):
         left += part
     costs_panel.set_xlabel("percent of a frame's stages, the six largest")
     legend_above(costs_panel, 6)
-    launches.barh(range(len(rows)), [count for _, _, count, _ in rows], color=[PALE if "paper" in label else WINNER for label, *_ in rows], height=0.7)
+    launches.barh(
+        range(len(rows)),
+        [count for _, _, count, _ in rows],
+        color=[PALE if "paper" in label else WINNER for label, *_ in rows],
+        height=0.7,
+    )
     launches.set(xscale="log", xlabel="launches a frame, as the release counts")
     log_axis(launches.xaxis)
     for ax in plot.axes:
         ax.set_yticks(range(len(rows)), [label for label, *_ in rows], fontsize=8)
         ax.invert_yaxis()
     for (label, seconds, count, records), percent in zip(rows, percents):
-        plot.rows += [{"scene": label, "stage": stage, "ms_a_frame": 1e3 * seconds.get(stage, 0), "percent": percent[stage], "launches_a_frame": count,
-                       "records": records} for stage in STAGES]
-    spans = {who: [percent["write"] for (label, *_), percent in zip(rows, percents) if who in label] for who in ("ours", "paper")}
+        plot.rows += [
+            {
+                "scene": label,
+                "stage": stage,
+                "ms_a_frame": 1e3 * seconds.get(stage, 0),
+                "percent": percent[stage],
+                "launches_a_frame": count,
+                "records": records,
+            }
+            for stage in STAGES
+        ]
+    spans = {
+        who: [percent["write"] for (label, *_), percent in zip(rows, percents) if who in label]
+        for who in ("ours", "paper")
+    }
     text = {who: f"{min(own):.0f} to {max(own):.0f} %" for who, own in spans.items() if own}
     title = f"gProximity as published, with a bounded queue array: write takes {text['ours']} of its stages"
-    return plot.save(folder.path, title + (f", and {text['paper']} on the paper's {GPU} with its whole array" if "paper" in text else ""))
+    return plot.save(
+        folder.path,
+        title
+        + (f", and {text['paper']} on the paper's {GPU} with its whole array" if "paper" in text else ""),
+    )
 
 
 def figure8(folder):
     """Stages of gProximity over frames of the funnel; dotted: the paper's means."""
     case = published(folder, "gproximity").get("funnel")
     if case is None:
-        return missing(folder.path, 8, "gProximity over frames", "no cell of gProximity published on funnel has completed")
+        return missing(
+            folder.path,
+            8,
+            "gProximity over frames",
+            "no cell of gProximity published on funnel has completed",
+        )
     plot = Plot(8, 2, 2.9)
     times, launches = plot.axes
     theirs, _ = of_paper("gproximity")["funnel"]
@@ -85,32 +155,63 @@ def figure8(folder):
         if theirs.get(stage):
             times.axhline(1e3 * theirs[stage], color=COLOUR_OF[stage], linestyle=":", linewidth=1)
         tops[stage] = values.sum()
-        plot.rows += [{"frame": frame, "stage": stage, "ms": value, "paper_ms": 1e3 * theirs[stage] if stage in theirs else None} for frame, value in zip(frames, values)]
+        plot.rows += [
+            {
+                "frame": frame,
+                "stage": stage,
+                "ms": value,
+                "paper_ms": 1e3 * theirs[stage] if stage in theirs else None,
+            }
+            for frame, value in zip(frames, values)
+        ]
     times.set_yscale("log")
     milliseconds(times)
     legend_above(times, 6)
     log_axis(times.yaxis)
-    counts = sorted((r["frames"]["first"], r["frames"]["last"], sum(s["launches"] for s in r["stages"].values()) / (r["frames"]["last"] - r["frames"]["first"] + 1)) for r in case.records)
-    launches.plot([(first + last) / 2 for first, last, _ in counts], [count for *_, count in counts], "o-", markersize=3, color=WINNER)
+    counts = sorted(
+        (
+            r["frames"]["first"],
+            r["frames"]["last"],
+            sum(s["launches"] for s in r["stages"].values())
+            / (r["frames"]["last"] - r["frames"]["first"] + 1),
+        )
+        for r in case.records
+    )
+    launches.plot(
+        [(first + last) / 2 for first, last, _ in counts],
+        [count for *_, count in counts],
+        "o-",
+        markersize=3,
+        color=WINNER,
+    )
     plot.rows += [{"frame": first, "stage": "launches", "launches": count} for first, _, count in counts]
     launches.set(ylabel="launches a frame", xlabel="frame")
     launches.set_ylim(bottom=0)
     largest = max(tops, key=tops.get)
-    return plot.save(folder.path, f"gProximity as published, {case.scene}, bounded queue array: {largest} takes most, {100 * tops[largest] / sum(tops.values()):.0f} % of all stages "
-                     f"(dotted: means of the paper's {GPU}, whole array, steps 20 to 121)")
+    return plot.save(
+        folder.path,
+        f"gProximity as published, {case.scene}, bounded queue array: {largest} takes most, {100 * tops[largest] / sum(tops.values()):.0f} % of all stages "
+        f"(dotted: means of the paper's {GPU}, whole array, steps 20 to 121)",
+    )
 
 
 def _launches(folder):
-    """{method: {scene: (launches a frame, records)}}, k = 8: as the release counts, or all kernels of a method that it does not have."""
+    """{method: {scene: (launches a frame, records)}}, k = 8: as the release counts, or all kernels of a
+    method that it does not have."""
     rows = {}
     for scene in SCENES:
         for case in folder.cases(f"cells-{scene}") + folder.cases(f"resident-{scene}"):
             if case.settings.get("k") == "8":
                 count = case.release_launches
                 name = name_of(case) if count is not None else f"{name_of(case)}, all kernels"
-                rows.setdefault(name, {})[scene] = (case.sum("launches") if count is None else count) / case.frames, case.locations[0]
+                rows.setdefault(name, {})[scene] = (
+                    (case.sum("launches") if count is None else count) / case.frames,
+                    case.locations[0],
+                )
     for algorithm in ("chunked", "gproximity") if rows else ():
-        rows[f"paper's {GPU}, {algorithm}".replace("gp", "gP")] = {scene: (count, "results/paper/table5.csv") for scene, (_, count) in of_paper(algorithm).items()}
+        rows[f"paper's {GPU}, {algorithm}".replace("gp", "gP")] = {
+            scene: (count, "results/paper/table5.csv") for scene, (_, count) in of_paper(algorithm).items()
+        }
     return rows
 
 
@@ -122,23 +223,53 @@ def figure12(folder):
     curves, bars = plot.axes
     for colour, run in zip(COLOURS, [run.first(STEPS_OF_PAPER) for run in simulations]):
         launches = [sum(stage["launches"] for stage in step["stages"].values()) for step in run.steps]
-        curves.plot([step["step"] for step in run.steps], launches, color=colour, label=f"{run.label}, {run.run['algorithm']} {run.run['preset']}")
-        plot.rows += [{"scene": run.label, "method": run.method, "step": step["step"], "launches": n} for step, n in zip(run.steps, launches)]
+        curves.plot(
+            [step["step"] for step in run.steps],
+            launches,
+            color=colour,
+            label=f"{run.label}, {run.run['algorithm']} {run.run['preset']}",
+        )
+        plot.rows += [
+            {"scene": run.label, "method": run.method, "step": step["step"], "launches": n}
+            for step, n in zip(run.steps, launches)
+        ]
     curves.set(xlabel="step", ylabel="launches, all kernels")
     curves.set_ylim(bottom=0)
     legend_above(curves, 2)
     width = 0.8 / max(len(methods), 1)
     for i, (method, counts) in enumerate(methods.items()):
-        bars.bar([SCENES.index(scene) + width * (i - (len(methods) - 1) / 2) for scene in counts], [count for count, _ in counts.values()], width=0.9 * width,
-                 color=COLOURS[i % len(COLOURS)], label=method)
-        plot.rows += [{"scene": scene, "method": method, "launches": count, "records": location} for scene, (count, location) in counts.items()]
+        bars.bar(
+            [SCENES.index(scene) + width * (i - (len(methods) - 1) / 2) for scene in counts],
+            [count for count, _ in counts.values()],
+            width=0.9 * width,
+            color=COLOURS[i % len(COLOURS)],
+            label=method,
+        )
+        plot.rows += [
+            {"scene": scene, "method": method, "launches": count, "records": location}
+            for scene, (count, location) in counts.items()
+        ]
     bars.set_xticks(range(len(SCENES)), SCENES)
     bars.set(ylabel="launches a frame", yscale="log")
     log_axis(bars.yaxis)
     legend_above(bars, 3)
-    largest = max(((count, method, scene) for method, counts in methods.items() if "paper's " + GPU not in method for scene, (count, _) in counts.items()), default=None)
-    more = f"; the most are {written(float(round(largest[0])))} of {largest[1]} on {largest[2]}" if largest else ""
-    return plot.save(folder.path, f"Launches of each step of our simulations, and of each method with k = 8{more}")
+    largest = max(
+        (
+            (count, method, scene)
+            for method, counts in methods.items()
+            if "paper's " + GPU not in method
+            for scene, (count, _) in counts.items()
+        ),
+        default=None,
+    )
+    more = (
+        f"; the most are {written(float(round(largest[0])))} of {largest[1]} on {largest[2]}"
+        if largest
+        else ""
+    )
+    return plot.save(
+        folder.path, f"Launches of each step of our simulations, and of each method with k = 8{more}"
+    )
 
 
 def _thresholds(cases, preset):
@@ -148,9 +279,23 @@ def _thresholds(cases, preset):
 
 def _threshold_panel(ax, x, own):
     """Draws times over thresholds. Returns the fastest threshold."""
-    for name, colour in (("traverse", COLOUR_OF["traverse"]), ("seed", "#777777"), ("write", COLOUR_OF["write"])):
-        ax.plot(x, [1e3 * case.stage(name) / case.frames for case in own], "o-", color=colour, markersize=4, label=name)
-    median, low, high = (numpy.array([1e3 * case.total(which) / case.frames for case in own]) for which in ("median", "low", "high"))
+    for name, colour in (
+        ("traverse", COLOUR_OF["traverse"]),
+        ("seed", "#777777"),
+        ("write", COLOUR_OF["write"]),
+    ):
+        ax.plot(
+            x,
+            [1e3 * case.stage(name) / case.frames for case in own],
+            "o-",
+            color=colour,
+            markersize=4,
+            label=name,
+        )
+    median, low, high = (
+        numpy.array([1e3 * case.total(which) / case.frames for case in own])
+        for which in ("median", "low", "high")
+    )
     ax.plot(x, median, "o-", color=INK, markersize=4, label="whole frame")
     ax.fill_between(x, low, high, color=INK, alpha=0.15, linewidth=0)
     ax.set(xscale="log", yscale="log", xlabel="seed threshold")
@@ -166,7 +311,9 @@ def _threshold_panel(ax, x, own):
 
 def figure13(folder):
     cases = folder.cases("thresholds")
-    presets = [preset for preset in ("published", "paper", "grouped") if any(case.preset == preset for case in cases)]
+    presets = [
+        preset for preset in ("published", "paper", "grouped") if any(case.preset == preset for case in cases)
+    ]
     if not presets:
         return missing(folder.path, 13, "Seed thresholds", "no cell of the sweep has completed")
     plot = Plot(13, len(presets), 2.7)
@@ -174,24 +321,58 @@ def figure13(folder):
     for ax, preset in zip(plot.axes, presets):
         x, own = _thresholds(cases, preset)
         minima.append(f"{name_of(own[0])} at {written(_threshold_panel(ax, x, own))}")
-        plot.rows += [{"method": name_of(case), "seed_threshold": value, "traverse_ms": 1e3 * case.stage("traverse") / case.frames,
-                       "whole_ms": 1e3 * case.total() / case.frames, "low_ms": 1e3 * case.total("low") / case.frames, "high_ms": 1e3 * case.total("high") / case.frames,
-                       "seeds": sum(r["work"]["counters"].get("seeds", 0) for r in case.records if (r["work"] or {}).get("counters")) / case.frames,
-                       "samples": case.rounds, "records": case.locations[0]} for value, case in zip(x, own)]
-    return plot.save(folder.path, f"Seed thresholds on {cases[0].scene}, with the least median: {'; '.join(minima)} (the paper's figure has no numbers)")
+        plot.rows += [
+            {
+                "method": name_of(case),
+                "seed_threshold": value,
+                "traverse_ms": 1e3 * case.stage("traverse") / case.frames,
+                "whole_ms": 1e3 * case.total() / case.frames,
+                "low_ms": 1e3 * case.total("low") / case.frames,
+                "high_ms": 1e3 * case.total("high") / case.frames,
+                "seeds": sum(
+                    r["work"]["counters"].get("seeds", 0)
+                    for r in case.records
+                    if (r["work"] or {}).get("counters")
+                )
+                / case.frames,
+                "samples": case.rounds,
+                "records": case.locations[0],
+            }
+            for value, case in zip(x, own)
+        ]
+    return plot.save(
+        folder.path,
+        f"Seed thresholds on {cases[0].scene}, with the least median: {'; '.join(minima)} (the paper's figure has no numbers)",
+    )
 
 
 def _chunk_panel(plot, ax, cases, k):
     """Draws a frame's time over chunk bytes by order. Returns the fastest in words."""
     own_k = [case for case in cases if case.settings["k"] == k]
     for colour, order in zip(COLOURS, sorted({case.settings["builder"] for case in own_k})):
-        own = sorted((case for case in own_k if case.settings["builder"] == order), key=lambda case: int(case.settings["chunk_bytes"]))
+        own = sorted(
+            (case for case in own_k if case.settings["builder"] == order),
+            key=lambda case: int(case.settings["chunk_bytes"]),
+        )
         x = [int(case.settings["chunk_bytes"]) for case in own]
-        y, low, high = ([1e3 * case.total(which) / case.frames for case in own] for which in ("median", "low", "high"))
+        y, low, high = (
+            [1e3 * case.total(which) / case.frames for case in own] for which in ("median", "low", "high")
+        )
         ax.fill_between(x, low, high, color=colour, alpha=0.2, linewidth=0)
         ax.plot(x, y, "o-", color=colour, markersize=4, label=order)
-        plot.rows += [{"k": k, "method": name_of(case), "order": order, "chunk_bytes": bytes_, "ms": ms, "low_ms": l, "high_ms": h, "records": case.locations[0]}
-                      for case, bytes_, ms, l, h in zip(own, x, y, low, high)]
+        plot.rows += [
+            {
+                "k": k,
+                "method": name_of(case),
+                "order": order,
+                "chunk_bytes": bytes_,
+                "ms": ms,
+                "low_ms": l,
+                "high_ms": h,
+                "records": case.locations[0],
+            }
+            for case, bytes_, ms, l, h in zip(own, x, y, low, high)
+        ]
     ax.set(xscale="log", yscale="log", xlabel="chunk bytes of equation (1)")
     ax.set_title(f"{name_of(own_k[0])}, k = {k}", fontsize=9, loc="right", color=INK)
     milliseconds(ax)
@@ -199,7 +380,14 @@ def _chunk_panel(plot, ax, cases, k):
     log_axis(ax.yaxis)
     legend_above(ax, 4)
     best = min(own_k, key=lambda case: case.total() / case.frames)
-    ax.plot(int(best.settings["chunk_bytes"]), 1e3 * best.total() / best.frames, "o", color=WINNER, markersize=9, fillstyle="none")
+    ax.plot(
+        int(best.settings["chunk_bytes"]),
+        1e3 * best.total() / best.frames,
+        "o",
+        color=WINNER,
+        markersize=9,
+        fillstyle="none",
+    )
     return f"{best.settings['builder']}, {int(best.settings['chunk_bytes']):,} bytes with k = {k}"
 
 
@@ -207,11 +395,21 @@ def figure14(folder):
     """Chunk bytes of equation (1) and orders of tetrahedra. The paper mentions them but does not measure them."""
     cases = folder.cases("chunk-study")
     if not cases:
-        return missing(folder.path, 14, "Chunk bytes and orders of tetrahedra", "no cell of the study has completed")
-    panels = sorted({(case.preset, case.settings["k"]) for case in cases}, key=lambda panel: (panel[0], int(panel[1])))
+        return missing(
+            folder.path, 14, "Chunk bytes and orders of tetrahedra", "no cell of the study has completed"
+        )
+    panels = sorted(
+        {(case.preset, case.settings["k"]) for case in cases}, key=lambda panel: (panel[0], int(panel[1]))
+    )
     plot = Plot(14, len(panels), 3.0)
-    minima = [_chunk_panel(plot, ax, [case for case in cases if case.preset == preset], k) for ax, (preset, k) in zip(plot.axes, panels)]
-    return plot.save(folder.path, f"Beyond the paper, chunk bytes and orders on {cases[0].scene}, with the least medians: {'; '.join(minima)}")
+    minima = [
+        _chunk_panel(plot, ax, [case for case in cases if case.preset == preset], k)
+        for ax, (preset, k) in zip(plot.axes, panels)
+    ]
+    return plot.save(
+        folder.path,
+        f"Beyond the paper, chunk bytes and orders on {cases[0].scene}, with the least medians: {'; '.join(minima)}",
+    )
 
 
 def all_of_frames(folder):

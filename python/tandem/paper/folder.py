@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Reads a folder of 'tandem paper': steps, cells, simulations, and the paper's own tables."""
+
 import csv
 import json
 import pathlib
@@ -15,12 +16,17 @@ STEPS_OF_PAPER = 500  # of its simulations
 
 def paper_table(number):
     """Rows of results/paper/tableN.csv as texts. The file is part of the package."""
-    for folder in (pathlib.Path(__file__).parent / "data", pathlib.Path(__file__).parents[3] / "results" / "paper"):
+    for folder in (
+        pathlib.Path(__file__).parent / "data",
+        pathlib.Path(__file__).parents[3] / "results" / "paper",
+    ):
         path = folder / f"table{number}.csv"
         if path.exists():
             with open(path, newline="") as file:
                 return list(csv.DictReader(file))
-    raise lines.RecordError(f"table{number}.csv of the paper is not part of this installation; install the package again")
+    raise lines.RecordError(
+        f"table{number}.csv of the paper is not part of this installation; install the package again"
+    )
 
 
 def number(text):
@@ -29,16 +35,25 @@ def number(text):
 
 
 class MeasuredCells:
-    """The cells of one scene, algorithm, preset and settings, over one or several ranges of frames, with sums over their frames. Times are
-    seconds: medians of the replays, on the device, or on the host for stages without device time."""
+    """The cells of one scene, algorithm, preset and settings, over one or several ranges of frames, with sums
+    over their frames. Times are seconds: medians of the replays, on the device, or on the host for stages
+    without device time."""
 
     def __init__(self, records, locations):
         self.records, self.locations = records, locations
         first = records[0]
-        self.scene, self.algorithm, self.preset, self.settings = first["scene"]["name"], first["algorithm"], first["preset"], first["settings"]
+        self.scene, self.algorithm, self.preset, self.settings = (
+            first["scene"]["name"],
+            first["algorithm"],
+            first["preset"],
+            first["settings"],
+        )
         self.device = first["devices"][0]
         self.frames = sum(r["frames"]["last"] - r["frames"]["first"] + 1 for r in records)
-        self.first, self.last = min(r["frames"]["first"] for r in records), max(r["frames"]["last"] for r in records)
+        self.first, self.last = (
+            min(r["frames"]["first"] for r in records),
+            max(r["frames"]["last"] for r in records),
+        )
         self.status = next((r["status"] for r in records if r["status"] != "ok"), "ok")
         self.scale = STEPS_OF_TABLES / self.frames
 
@@ -55,12 +70,15 @@ class MeasuredCells:
         return min(len(rounds_of(r)) for r in self.records)
 
     def stage(self, name, where=None):
-        """Sum of a stage. where: device_ns, host_ns, launches, waits or bytes; default: the device's time, or else the host's."""
+        """Sum of a stage. where: device_ns, host_ns, launches, waits or bytes; default: the device's time, or
+        else the host's."""
+
         def of(stage):
             if where in ("launches", "waits", "bytes"):
                 return stage[where]
             device, host = stage["device_ns"]["median"], stage["host_ns"]["median"]
             return (device or host if where is None else stage[where]["median"]) / 1e9
+
         return sum(of(r["stages"][name]) for r in self.records if name in r["stages"])
 
     def sum(self, where):
@@ -70,7 +88,10 @@ class MeasuredCells:
         """Seconds of host work with that name; None for old records without names of host work."""
         if not all("host_work" in r for r in self.records):
             return None
-        return sum(r["host_work"][name]["host_ns"]["median"] for r in self.records if name in r["host_work"]) / 1e9
+        return (
+            sum(r["host_work"][name]["host_ns"]["median"] for r in self.records if name in r["host_work"])
+            / 1e9
+        )
 
     @property
     def release_launches(self):
@@ -80,7 +101,8 @@ class MeasuredCells:
 
     @property
     def batches(self):
-        """Number of batches of gProximity in all frames; None if a batch has all body pairs or their number is unknown."""
+        """Number of batches of gProximity in all frames; None if a batch has all body pairs or their number
+        is unknown."""
         found = [batches_of(r, frame_range(r)) for r in self.records]
         return sum(found) if all(found) else None
 
@@ -112,15 +134,17 @@ class Folder:
         try:
             return [json.loads(line) for line in whole]
         except ValueError:
-            raise lines.RecordError(f"{path}: a line is not JSON; measure the step again with --again") from None
+            raise lines.RecordError(
+                f"{path}: a line is not JSON; measure the step again with --again"
+            ) from None
 
     def named(self, beginning):
         """Names of completed steps with that beginning, in their order."""
         return [name for name, step in self.steps.items() if name.startswith(beginning) and step["exit"] == 0]
 
     def cases(self, step):
-        """MeasuredCells from the last record of each cell of a step, also of a step that did not complete. Cells of one scene, algorithm, preset and
-        settings with different frames form one entry."""
+        """MeasuredCells from the last record of each cell of a step, also of a step that did not complete.
+        Cells of one scene, algorithm, preset and settings with different frames form one entry."""
         if step not in self._cases:
             self._cases[step] = self._read_cases(step)
         return list(self._cases[step])
@@ -135,10 +159,19 @@ class Folder:
         groups = {}
         for record, location in cells.values():
             settings = {**record["settings"], **record.get("asked", {})}
-            key = (record["scene"]["key"], record["algorithm"], record["preset"], record["devices"][0]["id"], tuple(sorted(settings.items())))
+            key = (
+                record["scene"]["key"],
+                record["algorithm"],
+                record["preset"],
+                record["devices"][0]["id"],
+                tuple(sorted(settings.items())),
+            )
             groups.setdefault(key, []).append((record, location))
-        cases = [MeasuredCells([r for r, _ in group], [p for _, p in group]) for group in groups.values()
-                if all(r["status"] == "failed" or r["total_ns"] for r, _ in group)]
+        cases = [
+            MeasuredCells([r for r, _ in group], [p for _, p in group])
+            for group in groups.values()
+            if all(r["status"] == "failed" or r["total_ns"] for r, _ in group)
+        ]
         return [case for case in cases if case.status == "ok"]
 
     def wrong(self):
@@ -147,23 +180,34 @@ class Folder:
         for path in sorted((self.path / "records").glob("*.jsonl")):
             for row, line in enumerate(self._json_lines(f"records/{path.name}"), 1):
                 if line.get("status", "ok") != "ok":
-                    found.append((f"records/{path.name}:{row}", f"{line['status']}: {line.get('failure') or 'its answer differs from the reference'}"))
+                    found.append(
+                        (
+                            f"records/{path.name}:{row}",
+                            f"{line['status']}: {line.get('failure') or 'its answer differs from the reference'}",
+                        )
+                    )
         return found
 
     def disturbed(self):
         """(step, number of disturbed rounds, number of rounds) of the steps with disturbed rounds."""
         found = []
         for path in sorted((self.path / "records").glob("*.jsonl")):
-            records = [line for line in self._json_lines(f"records/{path.name}") if line.get("conditions") and line.get("total_ns")]
+            records = [
+                line
+                for line in self._json_lines(f"records/{path.name}")
+                if line.get("conditions") and line.get("total_ns")
+            ]
             count = sum(len(disturbed_rounds(record)) for record in records)
             if count:
                 found.append((path.stem, count, sum(len(rounds_of(record)) for record in records)))
         return found
 
     def composition(self, run, step):
-        """A simulation with the published data path, composed of `run` and of a step with its frames; None without one of them. Raises NotMeasured if
-        they have other contacts."""
-        cells = [case for case in self.cases(step) if (case.algorithm, case.preset) == ("chunked", "published")]
+        """A simulation with the published data path, composed of `run` and of a step with its frames; None
+        without one of them. Raises NotMeasured if they have other contacts."""
+        cells = [
+            case for case in self.cases(step) if (case.algorithm, case.preset) == ("chunked", "published")
+        ]
         return composed(run, cells[0]) if run and cells else None
 
     def simulation(self, step):
@@ -189,7 +233,14 @@ class Folder:
 
     def compositions(self):
         """The simulations of all scenes that can be composed."""
-        return [run for run in (self.composition_or_none(self.simulation(f"sim-{scene}"), f"steps-{scene}") for scene in SCENES) if run]
+        return [
+            run
+            for run in (
+                self.composition_or_none(self.simulation(f"sim-{scene}"), f"steps-{scene}")
+                for scene in SCENES
+            )
+            if run
+        ]
 
     def ceilings(self):
         found = self._json_lines("records/ceilings.jsonl")

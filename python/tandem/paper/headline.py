@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The answer of a folder in three sentences, and the table of the four methods that it is drawn from."""
+
 import statistics
 
 from .claims import counts
@@ -13,12 +14,16 @@ from .tables import written
 def interval_text(measured):
     """ "0.633 [0.629, 0.643]", or the value alone for a count and for one sample."""
     value = written(measured.value)
-    return value if measured.low == measured.high else f"{value} [{written(measured.low)}, {written(measured.high)}]"
+    return (
+        value
+        if measured.low == measured.high
+        else f"{value} [{written(measured.low)}, {written(measured.high)}]"
+    )
 
 
 def four_methods(folder):
-    """One row for each scene, its frames and k with at least two of the four methods: milliseconds a frame of each case, and gProximity's time over that of the
-    others as a Measured."""
+    """One row for each scene, its frames and k with at least two of the four methods: milliseconds a frame of
+    each case, and gProximity's time over that of the others as a Measured."""
     rows = []
     for scene, k, cases in four_of_scenes(folder, ("8", "18")):
         other = cases["gProximity"]
@@ -42,9 +47,13 @@ def _span(values):
 
 def _resident(rows):
     parts = []
-    for name, words in zip([name for name in FOUR if name != "gProximity"], ("the paper's schedule", "ours, grouped,", "tiled")):
+    for name, words in zip(
+        [name for name in FOUR if name != "gProximity"], ("the paper's schedule", "ours, grouped,", "tiled")
+    ):
         values = [row["ratios"][name].value for row in rows if row["ratios"][name]]
-        parts.append(f"{_span(values)} times as long as {words}" if values else f"an unmeasured time beside {words}")
+        parts.append(
+            f"{_span(values)} times as long as {words}" if values else f"an unmeasured time beside {words}"
+        )
     return f"Resident on the device, gProximity takes {parts[0]}, {parts[1]} and {parts[2]}."
 
 
@@ -55,26 +64,39 @@ def _values(claims, wanted):
 
 def _published(claims):
     whole, small = _values(claims, "narrow-in-all-cases"), _values(claims, "narrow-small-array")
-    first = (f"As published, gProximity uploads its whole queue array for every batch, and its narrow phase takes {_span(whole)} times as long as chunked's"
-             if whole else "As published, with gProximity's whole queue array, no scene can be judged here")
+    first = (
+        f"As published, gProximity uploads its whole queue array for every batch, and its narrow phase takes {_span(whole)} times as long as chunked's"
+        if whole
+        else "As published, with gProximity's whole queue array, no scene can be judged here"
+    )
     return f"{first}; with a bounded array, the factor is {_span(small)}." if small else f"{first}."
 
 
 def sentences(folder, claims):
     """Three sentences from the records."""
     number = counts(claims)
-    verdicts = (f"{number[AGREES]} agree, {number[DIFFERS]} differ, {number[NOT_SETTLED]} are not settled, and {number[UNTESTED]} are untested")
-    return [_resident(four_methods(folder)), _published(claims), f"Among {len(claims)} claims of the paper, {verdicts}."]
+    verdicts = f"{number[AGREES]} agree, {number[DIFFERS]} differ, {number[NOT_SETTLED]} are not settled, and {number[UNTESTED]} are untested"
+    return [
+        _resident(four_methods(folder)),
+        _published(claims),
+        f"Among {len(claims)} claims of the paper, {verdicts}.",
+    ]
 
 
 def method_rows(folder):
-    """Rows of texts: scene, k, then for each method milliseconds a frame, and gProximity over it with its interval."""
+    """Rows of texts: scene, k, then for each method milliseconds a frame, and gProximity over it with its
+    interval."""
     rows = []
     for row in four_methods(folder):
         texts = []
         for name in FOUR:
             case, measured = row["cases"][name], row["ratios"].get(name)
-            texts.append("not measured" if case is None else written(1e3 * case.total() / case.frames) + (f" ({interval_text(measured)})" if measured else ""))
+            texts.append(
+                "not measured"
+                if case is None
+                else written(1e3 * case.total() / case.frames)
+                + (f" ({interval_text(measured)})" if measured else "")
+            )
         frames = statistics.mode(f"{case.first}:{case.last}" for case in row["cases"].values() if case)
         rows.append([f"{row['scene']}, frames {frames}", row["k"], *texts])
     return rows

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The measures that claims declare: each takes the fields of a claim and a scene, and returns a Measured, or raises NotMeasured."""
+"""The measures that claims declare: each takes the fields of a claim and a scene, and returns a Measured, or
+raises NotMeasured."""
+
 import json
 import math
 
@@ -30,15 +32,28 @@ class Declared:
         return [step.replace("{scene}", scene) for step in ([steps] if isinstance(steps, str) else steps)]
 
     def wanted(self, side, k, usual=None):
-        """What a cell has to have: algorithm, preset and settings. usual: the name of a cell for sides without one."""
+        """What a cell has to have: algorithm, preset and settings. usual: the name of a cell for sides
+        without one."""
         name = side.get("cell", usual)
-        return {"k": k, **(names()["cells"][name] if name else {}), **{key: value for key, value in side.items() if key not in SELECTS_NOT}}
+        return {
+            "k": k,
+            **(names()["cells"][name] if name else {}),
+            **{key: value for key, value in side.items() if key not in SELECTS_NOT},
+        }
 
     def _first(self, folder, sides, scene, k, usual):
         """The cells of all sides, from the first step that has them all; None if there is none."""
         choices = [self.steps(side, scene) for side in sides]
         for number in range(max(map(len, choices))):
-            cells = [found(folder, steps[min(number, len(steps) - 1)], side.get("scene", scene), self.wanted(side, k, usual)) for side, steps in zip(sides, choices)]
+            cells = [
+                found(
+                    folder,
+                    steps[min(number, len(steps) - 1)],
+                    side.get("scene", scene),
+                    self.wanted(side, k, usual),
+                )
+                for side, steps in zip(sides, choices)
+            ]
             if all(cells):
                 return cells
         return None
@@ -55,16 +70,24 @@ class Declared:
         first, last = self.fields.get("covers", (math.inf, -math.inf))
         for cell in cells:
             if cell.first > first or cell.last < last:
-                raise NotMeasured(f"measured in frames {cell.first} to {cell.last}; the paper's 500 steps need {first} to {last}")
+                raise NotMeasured(
+                    f"measured in frames {cell.first} to {cell.last}; the paper's 500 steps need {first} to {last}"
+                )
         return cells
 
     def simulation(self, folder, scene):
-        names = self.fields["simulation"] if isinstance(self.fields["simulation"], list) else [self.fields["simulation"]]
+        names = (
+            self.fields["simulation"]
+            if isinstance(self.fields["simulation"], list)
+            else [self.fields["simulation"]]
+        )
         run = next(filter(None, (folder.simulation(name.replace("{scene}", scene)) for name in names)), None)
         if run is None:
             raise NotMeasured("no such simulation has completed")
         first, last = self.fields.get("covers", (math.inf, -math.inf))
-        if self.fields["measure"] != "composed_step" and (run.steps[0]["step"] > first or run.steps[-1]["step"] < last):
+        if self.fields["measure"] != "composed_step" and (
+            run.steps[0]["step"] > first or run.steps[-1]["step"] < last
+        ):
             raise NotMeasured(f"simulated in {len(run.steps)} steps; the paper's are {last + 1}")
         return run
 
@@ -76,16 +99,26 @@ def ratio(claim, folder, scene, k):
 
 
 def backends(claim, folder, scene, k):
-    """A ratio of two methods with OpenCL over the same ratio with CUDA, on one device. The ends of the interval are those of the two ratios, which holds
-    however they depend on each other."""
+    """A ratio of two methods with OpenCL over the same ratio with CUDA, on one device. The ends of the
+    interval are those of the two ratios, which holds however they depend on each other."""
     sides = (claim.fields["above"], claim.fields["below"])
+
     def ratio_with(backend, **more):
         other, own = claim.cells(folder, [{**side, "backend": backend, **more} for side in sides], scene, k)
         return ratio_of(other, sides[0]["quantity"], own, sides[1]["quantity"]), own.device["name"]
+
     cuda, name = ratio_with("cuda")
     opencl, _ = ratio_with("opencl", device=name)
-    return Measured(opencl.value / cuda.value, opencl.low / cuda.high, opencl.high / cuda.low, min(opencl.samples, cuda.samples), opencl.disturbed + cuda.disturbed,
-                    opencl.basis, opencl.frames, (*opencl.records, *cuda.records))
+    return Measured(
+        opencl.value / cuda.value,
+        opencl.low / cuda.high,
+        opencl.high / cuda.low,
+        min(opencl.samples, cuda.samples),
+        opencl.disturbed + cuda.disturbed,
+        opencl.basis,
+        opencl.frames,
+        (*opencl.records, *cuda.records),
+    )
 
 
 def count(claim, folder, scene, k):
@@ -93,17 +126,28 @@ def count(claim, folder, scene, k):
     [cell] = claim.cells(folder, (side,), scene, k)
     counts = [count_of(record, side["quantity"], frame_range(record)) for record in cell.records]
     is_scene = side["quantity"] in ("bodies", "tetrahedra")
-    return exact(counts[0] if is_scene else sum(counts), cell.locations[:1], f"{cell.frames} of {cell.first}:{cell.last}")
+    return exact(
+        counts[0] if is_scene else sum(counts),
+        cell.locations[:1],
+        f"{cell.frames} of {cell.first}:{cell.last}",
+    )
 
 
 def _arrays(claim, folder):
     """The cells with a whole queue array, one of each step that has it: those with the largest array."""
     side = claim.fields["array"]
     preset = claim.wanted(side, "8")["preset"]
-    cells = [case for step in side["step"] for case in folder.cases(step) if case.algorithm == "gproximity" and case.preset == preset]
+    cells = [
+        case
+        for step in side["step"]
+        for case in folder.cases(step)
+        if case.algorithm == "gproximity" and case.preset == preset
+    ]
     if not cells:
         raise NotMeasured(claim.fields.get("without", "no record with the release's whole queue array"))
-    size = lambda case: math.inf if case.settings["queue_bytes"] == "device" else int(case.settings["queue_bytes"])
+    size = lambda case: (
+        math.inf if case.settings["queue_bytes"] == "device" else int(case.settings["queue_bytes"])
+    )
     return [case for case in cells if size(case) == max(map(size, cells))]
 
 
@@ -118,7 +162,9 @@ def composed_total(claim, folder, scene, k):
     above, below = claim.fields["above"], claim.fields["below"]
     other, own = claim.cells(folder, (above, below), scene, k)
     rest = composed.Rest(claim.simulation(folder, scene), own, below["parts"])
-    return composed.ratio_with_array(other, above["quantity"], own, below["quantity"], _arrays(claim, folder), rest)
+    return composed.ratio_with_array(
+        other, above["quantity"], own, below["quantity"], _arrays(claim, folder), rest
+    )
 
 
 def composed_share(claim, folder, scene, k):
@@ -130,11 +176,14 @@ def composed_share(claim, folder, scene, k):
 def composed_step(claim, folder, scene, k):
     above, below = claim.fields["above"], claim.fields["below"]
     [cell] = claim.cells(folder, (above,), scene, k)
-    return composed.step_share(cell, above["quantity"], claim.simulation(folder, scene), above["parts"], below["parts"])
+    return composed.step_share(
+        cell, above["quantity"], claim.simulation(folder, scene), above["parts"], below["parts"]
+    )
 
 
 def digests(claim, folder, scene, k):
-    """Groups of cells with equal frames and bounds, of at least two algorithms and with pairs: the share with equal digests."""
+    """Groups of cells with equal frames and bounds, of at least two algorithms and with pairs: the share with
+    equal digests."""
     groups = {}
     for step in [f"{kind}-{name}" for name in SCENES for kind in ("cells", "resident")]:
         for record in [record for case in folder.cases(step) for record in case.records]:
@@ -142,7 +191,10 @@ def digests(claim, folder, scene, k):
             if digest and digest["count"]:
                 own = record["settings"]
                 # Boxes of spheres may leave out pairs of bodies that other broad phases keep.
-                bounds = [*(str(own.get(name)) for name in ("k", "axes", "precision", "rounding", "placement")), own.get("broad") == "sphere_boxes"]
+                bounds = [
+                    *(str(own.get(name)) for name in ("k", "axes", "precision", "rounding", "placement")),
+                    own.get("broad") == "sphere_boxes",
+                ]
                 group = groups.setdefault((record["scene"]["digest"], frame_range(record), *bounds), {})
                 group.setdefault(record["algorithm"], set()).add(json.dumps(digest))
     compared = [group for group in groups.values() if len(group) > 1]
@@ -154,11 +206,13 @@ def digests(claim, folder, scene, k):
 
 def chunks(claim, folder, scene, k):
     """A quantity of exported chunks of one order, over that of another."""
+
     def of(order):
         exported = chunks_of(folder, order)
         if exported is None:
             raise NotMeasured("chunks have not been exported")
         return getattr(exported, claim.fields["quantity"])()
+
     below = claim.fields.get("below")
     value = of(claim.fields["above"]) / (of(below) if below else 1)
     return exact(value, [f"chunks-{order}.csv" for order in (claim.fields["above"], below) if order])
@@ -175,15 +229,29 @@ def _on_device(claim, folder, scene):
 def _curve(run, name):
     """A number for each step: of a field, or the seconds of "stage:A+B"."""
     kind, _, stages = name.partition(":")
-    return numpy.sum([run.curve(f"stage:{stage}") for stage in stages.split("+")], axis=0) if stages else numpy.array(run.curve(kind), float)
+    return (
+        numpy.sum([run.curve(f"stage:{stage}") for stage in stages.split("+")], axis=0)
+        if stages
+        else numpy.array(run.curve(kind), float)
+    )
 
 
 def _of_steps(run, value, low, high):
-    return Measured(float(value), float(low), float(high), len(run.steps), 0, "steps of one run", f"{len(run.steps)} steps", (run.location,))
+    return Measured(
+        float(value),
+        float(low),
+        float(high),
+        len(run.steps),
+        0,
+        "steps of one run",
+        f"{len(run.steps)} steps",
+        (run.location,),
+    )
 
 
 def correlation(claim, folder, scene, k):
-    """Spearman's rank correlation over steps, with the interval of Bonett and Wright (2000, Psychometrika 65, equation 3)."""
+    """Spearman's rank correlation over steps, with the interval of Bonett and Wright (2000, Psychometrika 65,
+    equation 3)."""
     run = _on_device(claim, folder, scene)
     x, y = (_curve(run, name) for name in claim.fields["quantity"])
     good = (x > 0) & (y > 0)
@@ -200,17 +268,40 @@ def deciles(claim, folder, scene, k):
     run = _on_device(claim, folder, scene)
     values = _curve(run, claim.fields["quantity"])
     of = lambda rows: numpy.quantile(rows, 0.9, axis=-1) / numpy.quantile(rows, 0.1, axis=-1)
-    return _of_steps(run, of(values), *resampling.bootstrap_interval(len(values), lambda drawn: of(values[drawn])))
+    return _of_steps(
+        run, of(values), *resampling.bootstrap_interval(len(values), lambda drawn: of(values[drawn]))
+    )
 
 
 def mean_of_steps(claim, folder, scene, k):
     run = claim.simulation(folder, scene)
-    return exact(float(numpy.mean(_curve(run, claim.fields["quantity"]))), (run.location,), f"{len(run.steps)} steps")
+    return exact(
+        float(numpy.mean(_curve(run, claim.fields["quantity"]))), (run.location,), f"{len(run.steps)} steps"
+    )
 
 
 def median_of_steps(claim, folder, scene, k):
     run = claim.simulation(folder, scene)
-    return exact(float(numpy.median(_curve(run, claim.fields["quantity"]))), (run.location,), f"{len(run.steps)} steps")
+    return exact(
+        float(numpy.median(_curve(run, claim.fields["quantity"]))), (run.location,), f"{len(run.steps)} steps"
+    )
 
 
-MEASURES = {made.__name__: made for made in (ratio, backends, count, composed_ratio, composed_total, composed_share, composed_step, digests, chunks, correlation, deciles, median_of_steps, mean_of_steps)}
+MEASURES = {
+    made.__name__: made
+    for made in (
+        ratio,
+        backends,
+        count,
+        composed_ratio,
+        composed_total,
+        composed_share,
+        composed_step,
+        digests,
+        chunks,
+        correlation,
+        deciles,
+        median_of_steps,
+        mean_of_steps,
+    )
+}

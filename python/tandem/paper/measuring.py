@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Runs the steps of 'tandem paper' and keeps track of them. Uses only the standard library, so that a machine with a GPU needs nothing
-else for measurements."""
+"""Runs the steps of 'tandem paper' and keeps track of them. Uses only the standard library, so that a machine
+with a GPU needs nothing else for measurements."""
+
 import ctypes
 import dataclasses
 import datetime
@@ -20,7 +21,9 @@ PLANS = pathlib.Path(__file__).parent / "plans"
 
 @dataclasses.dataclass(frozen=True)
 class Step:
-    """A command of the program, or a plan of cells for `tandem run`. Paths are relative to the folder of results."""
+    """A command of the program, or a plan of cells for `tandem run`. Paths are relative to the folder of
+    results."""
+
     name: str
     says: str  # description
     seconds: float  # duration on the machine of the committed results
@@ -57,8 +60,16 @@ def steps_of(size, device):
     for one in json.loads(path.read_text())["steps"]:
         plan = _expanded(one["plan"], names) if "plan" in one else None
         name = one["name"]
-        command = one.get("command") or ["run", f"plans/{name}.json", "--resume", "--out", f"records/{name}.jsonl"]
-        steps.append(Step(name, one["says"], one["seconds"], tuple(_expanded(word, names) for word in command), plan))
+        command = one.get("command") or [
+            "run",
+            f"plans/{name}.json",
+            "--resume",
+            "--out",
+            f"records/{name}.jsonl",
+        ]
+        steps.append(
+            Step(name, one["says"], one["seconds"], tuple(_expanded(word, names) for word in command), plan)
+        )
     return steps
 
 
@@ -80,18 +91,22 @@ def _recordings(step):
     written = words[words.index("-o") + 1] if "-o" in words else ""
     scenes = (step.plan or {}).get("scenes", [])
     read = words + (scenes if isinstance(scenes, list) else [scenes])
-    return {pathlib.PurePath(word).name for word in read if word.endswith(".frames") and word != written}, written
+    return {
+        pathlib.PurePath(word).name for word in read if word.endswith(".frames") and word != written
+    }, written
 
 
 def _with_needed(numbers, steps):
     """Adds the steps that make the recordings of these."""
     needed = set.union(*(_recordings(steps[number])[0] for number in numbers))
-    return sorted(set(numbers) | {number for number, step in enumerate(steps) if _recordings(step)[1] in needed})
+    return sorted(
+        set(numbers) | {number for number, step in enumerate(steps) if _recordings(step)[1] in needed}
+    )
 
 
 def chosen(text, steps):
-    """Indices of the steps that --steps names, in their order; all for an empty text. Steps chosen by a table, a figure or a name come with those
-    that make their recordings."""
+    """Indices of the steps that --steps names, in their order; all for an empty text. Steps chosen by a
+    table, a figure or a name come with those that make their recordings."""
     if not text:
         return list(range(len(steps)))
     found = set()
@@ -104,13 +119,15 @@ def chosen(text, steps):
             own = [number for number, step in enumerate(steps) if word == step.name or word in shown_in(step)]
             own = _with_needed(own, steps) if own else ()
         if not own:
-            raise BadUse(f"--steps {text}: {word} is no step; give N or FIRST:LAST of 1:{len(steps)}, a name, tableN or figureN")
+            raise BadUse(
+                f"--steps {text}: {word} is no step; give N or FIRST:LAST of 1:{len(steps)}, a name, tableN or figureN"
+            )
         found.update(own)
     return sorted(found)
 
 
 def duration_text(seconds):
-    """"40 s", "7 min"."""
+    """ "40 s", "7 min"."""
     return f"{seconds:.0f} s" if seconds < 90 else f"{seconds / 60:.0f} min"
 
 
@@ -132,8 +149,8 @@ def _sync_file_system(path):
 
 
 class Journal:
-    """An append-only file of JSON lines. A line survives a loss of power once append() has returned. An incomplete last line, which a kill
-    leaves, is moved to FILE.torn."""
+    """An append-only file of JSON lines. A line survives a loss of power once append() has returned. An
+    incomplete last line, which a kill leaves, is moved to FILE.torn."""
 
     def __init__(self, path):
         self.path = path
@@ -178,8 +195,8 @@ class Journal:
 
 
 class MeasuredFolder:
-    """A folder of results of one size and one device. steps.jsonl has the steps that ended, with their exit codes. records/, plans/ and logs/
-    have one file per step."""
+    """A folder of results of one size and one device. steps.jsonl has the steps that ended, with their exit
+    codes. records/, plans/ and logs/ have one file per step."""
 
     def __init__(self, path, size, device, program):
         self.path, self.size, self.device, self.program = pathlib.Path(path), size, device, program
@@ -188,13 +205,17 @@ class MeasuredFolder:
             try:
                 (self.path / part).mkdir(parents=True, exist_ok=True)
             except OSError as error:
-                raise BadUse(f"-o {path}: no folder can be created there ({error.strerror}); name another") from None
+                raise BadUse(
+                    f"-o {path}: no folder can be created there ({error.strerror}); name another"
+                ) from None
         self.journal = Journal(self.path / "steps.jsonl")
         self.done = set()
         for line in self.journal.lines():
             if (line.get("size"), line.get("device")) != (size, device):
-                raise BadUse(f"-o {path}: has results of size {line.get('size', '?')} on {line.get('device', '?')}; name another folder, or "
-                             "that size and device")
+                raise BadUse(
+                    f"-o {path}: has results of size {line.get('size', '?')} on {line.get('device', '?')}; name another folder, or "
+                    "that size and device"
+                )
             (self.done.add if line.get("exit") == 0 else self.done.discard)(line.get("key"))
 
     def is_done(self, step):
@@ -228,9 +249,12 @@ class MeasuredFolder:
         return words
 
     def run(self, step, environment):
-        """Runs the step in its own process and appends the result to steps.jsonl. Returns its exit code, or 128 plus the signal."""
+        """Runs the step in its own process and appends the result to steps.jsonl. Returns its exit code, or
+        128 plus the signal."""
         if step.plan is not None:
-            (self.path / "plans" / f"{step.name}.json").write_text(json.dumps(step.plan, indent=2, ensure_ascii=False) + "\n")
+            (self.path / "plans" / f"{step.name}.json").write_text(
+                json.dumps(step.plan, indent=2, ensure_ascii=False) + "\n"
+            )
         self.log(step).unlink(missing_ok=True)
         begin = time.monotonic()
         with open(self.log(step), "ab") as log:
@@ -238,10 +262,24 @@ class MeasuredFolder:
             code = self.running.wait()
         self.running = None
         code = 128 - code if code < 0 else code
-        _sync_file_system(self.path)  # the step's output must be durable before the line that marks it as done
+        _sync_file_system(
+            self.path
+        )  # the step's output must be durable before the line that marks it as done
         now = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
-        self.journal.append({"step": step.name, "size": self.size, "device": self.device, "exit": code, "seconds": time.monotonic() - begin,
-                             "says": step.says, "command": f"tandem {' '.join(step.command)}", "key": step.key, **environment, "date": now})
+        self.journal.append(
+            {
+                "step": step.name,
+                "size": self.size,
+                "device": self.device,
+                "exit": code,
+                "seconds": time.monotonic() - begin,
+                "says": step.says,
+                "command": f"tandem {' '.join(step.command)}",
+                "key": step.key,
+                **environment,
+                "date": now,
+            }
+        )
         if code == 0:
             self.done.add(step.key)
         return code
@@ -262,14 +300,16 @@ def environment_of(program):
 
 def list_steps(folder, steps):
     for number, step in enumerate(steps, 1):
-        print(f"{number:>3}  {step.name:<18} {'done' if folder.is_done(step) else f'{step.seconds} s':>6}  {step.says}")
+        print(
+            f"{number:>3}  {step.name:<18} {'done' if folder.is_done(step) else f'{step.seconds} s':>6}  {step.says}"
+        )
     left = sum(step.seconds for step in steps if not folder.is_done(step))
     print(f"about {duration_text(left)} left, with the durations of the committed results")
 
 
 def run_steps(folder, steps, numbers):
-    """Runs those of these steps that are not done; numbers: their indices. Later steps run also if one fails. Returns the worst exit code, or
-    128 plus the signal that ended them."""
+    """Runs those of these steps that are not done; numbers: their indices. Later steps run also if one fails.
+    Returns the worst exit code, or 128 plus the signal that ended them."""
     print_message = lambda text: print(text, file=sys.stderr, flush=True)
     environment = environment_of(folder.program)
     left = sum(steps[i].seconds for i in numbers if not folder.is_done(steps[i]))
@@ -282,14 +322,20 @@ def run_steps(folder, steps, numbers):
             break
         if folder.is_done(step):
             continue
-        pace = real / expected if expected > 0 else 1.0  # time on this machine over that of the committed results
-        print_message(f"{number}/{len(steps)} {step.name}: {step.says} (about {duration_text(step.seconds * pace)}; "
-                      f"all about {duration_text(left * pace)})")
+        pace = (
+            real / expected if expected > 0 else 1.0
+        )  # time on this machine over that of the committed results
+        print_message(
+            f"{number}/{len(steps)} {step.name}: {step.says} (about {duration_text(step.seconds * pace)}; "
+            f"all about {duration_text(left * pace)})"
+        )
         begin = time.monotonic()
         code = folder.run(step, environment)
         real, expected, left = real + time.monotonic() - begin, expected + step.seconds, left - step.seconds
         if code != 0 and not folder.interrupted:
-            print_message(f"tandem: step {step.name} ended with {code}: {folder.last_line(step)}; its output is in {folder.path}/logs")
+            print_message(
+                f"tandem: step {step.name} ended with {code}: {folder.last_line(step)}; its output is in {folder.path}/logs"
+            )
             worst = max(worst, 1 if code == 1 else 3)
     if folder.interrupted:
         print_message("tandem: interrupted; the same command continues")

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The names of methods and scenes of statements/names.toml, and the cells that they stand for."""
+
 import fnmatch
 import functools
 import pathlib
@@ -30,25 +31,36 @@ def _origin(case):
 
 
 def found(folder, step, scene, wanted):
-    """The first case of a step with that scene, algorithm, preset, back end, device and settings; None if there is none."""
+    """The first case of a step with that scene, algorithm, preset, back end, device and settings; None if
+    there is none."""
     pattern = names()["scenes"][scene]
     for case in folder.cases(step):
-        own = {**case.settings, **case.records[0].get("asked", {}), "algorithm": case.algorithm, "preset": case.preset,
-               "backend": case.device["id"].partition(":")[0], "device": case.device["name"]}
-        if fnmatch.fnmatch(_origin(case), pattern) and all(str(own.get(name)) == value for name, value in wanted.items()):
+        own = {
+            **case.settings,
+            **case.records[0].get("asked", {}),
+            "algorithm": case.algorithm,
+            "preset": case.preset,
+            "backend": case.device["id"].partition(":")[0],
+            "device": case.device["name"],
+        }
+        if fnmatch.fnmatch(_origin(case), pattern) and all(
+            str(own.get(name)) == value for name, value in wanted.items()
+        ):
             return case
     return None
 
 
 def four(folder, scene, k, steps):
-    """{name: case or None} of the four methods on a scene, from the one of these steps that has the most of them."""
+    """{name: case or None} of the four methods on a scene, from the one of these steps that has the most of
+    them."""
     cells = names()["cells"]
     choices = [{name: found(folder, step, scene, {"k": k, **cells[name]}) for name in FOUR} for step in steps]
     return max(choices, key=lambda choice: sum(case is not None for case in choice.values()))
 
 
 def four_of_scenes(folder, values_of_k):
-    """(scene, k, cases of four()) of every scene: of the frames of the paper's tables, and of later ones where bodies are in contact."""
+    """(scene, k, cases of four()) of every scene: of the frames of the paper's tables, and of later ones
+    where bodies are in contact."""
     for scene in names()["groups"]["seven"]:
         for steps in (("schedules", f"resident-{scene}", f"cells-{scene}"), (f"jammed-{scene}",)):
             for k in values_of_k:

@@ -1,17 +1,25 @@
 # SPDX-License-Identifier: MIT
-"""Quantities of a record of a cell, by the names that claims use: times in seconds for each round, and counts.
+"""Quantities of a record of a cell, by the names that claims use: times in seconds for each round, and
+counts.
 
-Times: "frame" (whole frames), "breakdown" (whole frames of replays that time every command, of which all stages are parts), "narrow" (the
-narrow phase of the paper's Table 3: whole frames without transform, refit and broad phase), "stages:A+B" (sums of stages: device time, or
-host time of stages without it), "largest:A+B" (the largest of these stages), "host work:A+B" (host work with these names).
-Counts: "launches", "launches:A+B" of stages, "release launches" (as the paper's release counts), "bytes:A+B", "bytes for each launch:A+B"
-(launches of all stages), "counter:NAME", "contacts", "pairs", "body pairs", "bodies", "tetrahedra"."""
+Times: "frame" (whole frames), "breakdown" (whole frames of replays that time every command, of which all
+stages are parts), "narrow" (the narrow phase of the paper's Table 3: whole frames without transform, refit
+and broad phase), "stages:A+B" (sums of stages: device time, or host time of stages without it), "largest:A+B"
+(the largest of these stages), "host work:A+B" (host work with these names). Counts: "launches",
+"launches:A+B" of stages, "release launches" (as the paper's release counts), "bytes:A+B", "bytes for each
+launch:A+B" (launches of all stages), "counter:NAME", "contacts", "pairs", "body pairs", "bodies",
+"tetrahedra"."""
+
 import statistics
 
 from ..tables.cells import RELEASE_KERNELS
 
 TIMES = ("frame", "breakdown", "narrow", "stages", "largest", "host work")
-LISTS = {"contacts": "contacts", "pairs": "candidate_pairs", "body pairs": "body_pairs"}  # fields of `work` with a count for each frame
+LISTS = {
+    "contacts": "contacts",
+    "pairs": "candidate_pairs",
+    "body pairs": "body_pairs",
+}  # fields of `work` with a count for each frame
 BEFORE_NARROW = ("transform", "refit", "broad")
 
 
@@ -28,10 +36,11 @@ def frame_range(record):
 
 
 def weights_of(frames):
-    """How many steps each of these ascending frames stands for, as a share of their mean: those nearest to it. All 1 for evenly spaced frames."""
+    """How many steps each of these ascending frames stands for, as a share of their mean: those nearest to
+    it. All 1 for evenly spaced frames."""
     gaps = [later - earlier for earlier, later in zip(frames, frames[1:])] or [1]
     widths = [before + after for before, after in zip([gaps[0], *gaps], [*gaps, gaps[-1]])]
-    return [width * len(frames) / sum(widths[:len(frames)]) for width in widths[:len(frames)]]
+    return [width * len(frames) / sum(widths[: len(frames)]) for width in widths[: len(frames)]]
 
 
 def disturbed_rounds(record):
@@ -52,7 +61,9 @@ def _places(record, frames):
 
 def _whole_frames(record, frames):
     total, places = record["total_ns"], _places(record, frames)
-    samples = total["samples"] if places is None else [sum(sample[i] for i in places) for sample in total["frames"]]
+    samples = (
+        total["samples"] if places is None else [sum(sample[i] for i in places) for sample in total["frames"]]
+    )
     by_round = {}
     for number, ns in zip(total["rounds"], samples):
         by_round.setdefault(number, []).append(ns)
@@ -60,7 +71,8 @@ def _whole_frames(record, frames):
 
 
 def _stage(record, name, frames):
-    """Seconds of a stage for each round: replays that time every command are one for each round, in their order."""
+    """Seconds of a stage for each round: replays that time every command are one for each round, in their
+    order."""
     stage = record["stages"].get(name)
     if stage is None:
         return {}
@@ -82,7 +94,11 @@ def _host_work(record, name, frames):
     if _places(record, frames) is not None:
         raise NotMeasured("host work is not recorded for each frame")
     work = record["host_work"].get(name)
-    return {} if work is None else {number: ns / 1e9 for number, ns in zip(rounds_of(record), work["host_ns"]["samples"])}
+    return (
+        {}
+        if work is None
+        else {number: ns / 1e9 for number, ns in zip(rounds_of(record), work["host_ns"]["samples"])}
+    )
 
 
 def _combined(parts, combine):
@@ -147,15 +163,20 @@ def count_of(record, name, frames):
     _whole_only(record, frames)
     if kind in ("launches", "bytes"):
         return _of_stages(record, rest.split("+") if rest else (), kind)
-    found = release_launches(record) if kind == "release launches" else ((record["work"] or {}).get("counters") or {}).get(rest)
+    found = (
+        release_launches(record)
+        if kind == "release launches"
+        else ((record["work"] or {}).get("counters") or {}).get(rest)
+    )
     if found is None:
         raise NotMeasured("the records have no such count")
     return found
 
 
 def batch_size(record):
-    """Body pairs of a batch of gProximity; 0 if a batch has all. With sizes=release a batch has a body pair for each group, of which the release
-    launches as many as 2048 work-items for each compute unit make (its rule for the global size)."""
+    """Body pairs of a batch of gProximity; 0 if a batch has all. With sizes=release a batch has a body pair
+    for each group, of which the release launches as many as 2048 work-items for each compute unit make (its
+    rule for the global size)."""
     settings = record["settings"]
     size = int(settings.get("batch") or 0)
     if size == 0 and settings.get("sizes") == "release":
@@ -165,7 +186,8 @@ def batch_size(record):
 
 
 def batches_of(record, frames):
-    """Number of batches of gProximity in these frames, which takes a limited number of body pairs at a time; None if unknown."""
+    """Number of batches of gProximity in these frames, which takes a limited number of body pairs at a time;
+    None if unknown."""
     size, pairs = batch_size(record), (record["work"] or {}).get("body_pairs")
     if not size or not pairs:
         return None

@@ -1,18 +1,30 @@
 # SPDX-License-Identifier: MIT
-"""Ratios of quantities of cells over their common frames, with 95 % intervals. Cells that were measured side by side in several rounds are compared
-round by round. With one round for each of several frames, the frames are the samples."""
+"""Ratios of quantities of cells over their common frames, with 95 % intervals. Cells that were measured side
+by side in several rounds are compared round by round. With one round for each of several frames, the frames
+are the samples."""
+
 import math
 import statistics
 
 from .. import resampling
-from .quantities import NotMeasured, count_of, disturbed_rounds, frame_range, is_time, rounds_of, seconds_by_round, weights_of
+from .quantities import (
+    NotMeasured,
+    count_of,
+    disturbed_rounds,
+    frame_range,
+    is_time,
+    rounds_of,
+    seconds_by_round,
+    weights_of,
+)
 from .rules import Measured, exact
 
 LEAST_FRAMES = 5  # frames that are measured once each and still give an interval
 
 
 def common_frames(above, below):
-    """[(record, record, (first, last))] of the frames that both cells have, of one recording if they are of one scene. Raises NotMeasured."""
+    """[(record, record, (first, last))] of the frames that both cells have, of one recording if they are of
+    one scene. Raises NotMeasured."""
     pairs, alike = [], above.scene == below.scene
     for a in above.records:
         for b in below.records:
@@ -38,7 +50,9 @@ class Sampled:
         self.rounds, self.left_out = [], 0
         for record, frames in records:
             found = seconds_by_round(record, name, frames) or dict.fromkeys(rounds_of(record), 0.0)
-            clean = {number: value for number, value in found.items() if number not in disturbed_rounds(record)}
+            clean = {
+                number: value for number, value in found.items() if number not in disturbed_rounds(record)
+            }
             self.left_out += len(found) - len(clean)
             self.rounds.append(clean)
 
@@ -71,9 +85,13 @@ def _of_times(pairs, above, below, locations):
         return make((found.value, found.low, found.high), len(common), "rounds side by side")
     if not side_by_side and min(len(top.common()), len(bottom.common())) > 1:
         found = resampling.unpaired_ratio(bottom.sums(bottom.common()), top.sums(top.common()))
-        return make((found.value, found.low, found.high), min(len(top.common()), len(bottom.common())), "rounds")
+        return make(
+            (found.value, found.low, found.high), min(len(top.common()), len(bottom.common())), "rounds"
+        )
     weights = _weights(pairs)
-    weighted = lambda values: [None if value is None else value * weight for value, weight in zip(values, weights)]
+    weighted = lambda values: [
+        None if value is None else value * weight for value, weight in zip(values, weights)
+    ]
     return _of_frames(weighted(top.by_frame()), weighted(bottom.by_frame()), make)
 
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The verdict of a measured value by a declared rule."""
+
 import dataclasses
 import math
 
@@ -9,8 +10,10 @@ VERDICTS = (AGREES, DIFFERS, NOT_SETTLED, UNTESTED)
 
 @dataclasses.dataclass(frozen=True)
 class Measured:
-    """A value of the records with its 95 % interval. samples: independent samples that the interval comes from; 0 for a count, which is exact.
-    disturbed: samples left out because the machine was disturbed. basis: what the samples are. frames: how many frames it covers."""
+    """A value of the records with its 95 % interval. samples: independent samples that the interval comes
+    from; 0 for a count, which is exact. disturbed: samples left out because the machine was disturbed. basis:
+    what the samples are. frames: how many frames it covers."""
+
     value: float
     low: float
     high: float
@@ -72,7 +75,8 @@ def judged(measured, rule, paper=()):
 
 
 def together(verdicts, how):
-    """The verdict of a claim from those of its scenes. how: "all" scenes have to agree, as far as they are tested, or "any" of them."""
+    """The verdict of a claim from those of its scenes. how: "all" scenes have to agree, as far as they are
+    tested, or "any" of them."""
     counted = [verdict for verdict in verdicts if verdict != UNTESTED]
     if not counted or (how == "any" and AGREES not in counted and len(counted) < len(verdicts)):
         return UNTESTED

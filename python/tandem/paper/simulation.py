@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Simulations: those that ran, and those that are composed of a simulation and of its frames, which were measured with the published data path."""
+"""Simulations: those that ran, and those that are composed of a simulation and of its frames, which were
+measured with the published data path."""
+
 import copy
 import math
 import statistics
@@ -16,7 +18,8 @@ class Simulation:
 
     def __init__(self, lines_of_file, name, location):
         self.name, self.location = name, location
-        # Steps of several sessions, of which each continues the one before. A repeated step replaces the earlier one.
+        # Steps of several sessions, of which each continues the one before. A repeated step replaces the
+        # earlier one.
         steps = {line["step"]: line for line in lines_of_file if line["kind"] == "step"}
         self.steps = [steps[i] for i in sorted(steps)]
         self.run = [line for line in lines_of_file if line["kind"] == "run"][-1]
@@ -45,8 +48,14 @@ class Simulation:
         return sum(step.get("weight", 1) * step["host_ns"][name] for step in self.steps) / 1e9
 
     def stage(self, name, where=None):
-        of = lambda stage: (stage["device_ns"] or stage["host_ns"]) / 1e9 if where is None else stage[where] / (1e9 if where.endswith("_ns") else 1)
-        return sum(step.get("weight", 1) * of(step["stages"][name]) for step in self.steps if name in step["stages"])
+        of = lambda stage: (
+            (stage["device_ns"] or stage["host_ns"]) / 1e9
+            if where is None
+            else stage[where] / (1e9 if where.endswith("_ns") else 1)
+        )
+        return sum(
+            step.get("weight", 1) * of(step["stages"][name]) for step in self.steps if name in step["stages"]
+        )
 
     def curve(self, what):
         """One number per step. what: a field of a step, or "host:NAME" or "stage:NAME" for seconds."""
@@ -71,15 +80,21 @@ def frames_of(cell, name):
 
 
 def check_contacts(cell, steps):
-    """Raises NotMeasured unless the steps found the contacts of the cell's frames, but for a hundredth of all: with other bounds, other pairs that
-    touch exactly are candidates."""
+    """Raises NotMeasured unless the steps found the contacts of the cell's frames, but for a hundredth of
+    all: with other bounds, other pairs that touch exactly are candidates."""
     pairs = []
     for record in cell.records:
         counts = (record["work"] or {}).get("contacts") or []
-        pairs += [(contacts, steps[frame]["contacts_found"]) for frame, contacts in enumerate(counts, frame_range(record)[0]) if frame in steps]
+        pairs += [
+            (contacts, steps[frame]["contacts_found"])
+            for frame, contacts in enumerate(counts, frame_range(record)[0])
+            if frame in steps
+        ]
     unlike = [abs(contacts - found) for contacts, found in pairs if contacts != found]
     if sum(unlike) > 0.01 * sum(contacts for contacts, _ in pairs):
-        raise NotMeasured(f"the simulation is another one: its contacts differ in {len(unlike)} of {len(pairs)} frames")
+        raise NotMeasured(
+            f"the simulation is another one: its contacts differ in {len(unlike)} of {len(pairs)} frames"
+        )
 
 
 def _stages(cell):
@@ -89,37 +104,62 @@ def _stages(cell):
         first, last = frame_range(record)
         for frame in range(first, last + 1):
             at = lambda times: (times["frames"] or [0] * (frame + 1 - first))[frame - first]
-            found[frame] = {name: {where: at(stage[where]) for where in ("device_ns", "host_ns")} for name, stage in record["stages"].items()}
+            found[frame] = {
+                name: {where: at(stage[where]) for where in ("device_ns", "host_ns")}
+                for name, stage in record["stages"].items()
+            }
     return found
 
 
 def _with_frame(step, seconds, stages):
     """A step whose contacts are found in those seconds and stages."""
-    broad = (stages.get("broad") or {"device_ns": 0, "host_ns": 0})
+    broad = stages.get("broad") or {"device_ns": 0, "host_ns": 0}
     broad_ns = broad["device_ns"] or broad["host_ns"]
     host = {part: step["host_ns"][part] for part in SOLVER}
-    whole = {"step": 1e9 * seconds + sum(host.values()), "broad": broad_ns, "narrow": max(1e9 * seconds - broad_ns, 0), **host}
+    whole = {
+        "step": 1e9 * seconds + sum(host.values()),
+        "broad": broad_ns,
+        "narrow": max(1e9 * seconds - broad_ns, 0),
+        **host,
+    }
     return {**step, "stages": stages, "host_ns": {**step["host_ns"], **whole}}
 
 
 def composed(run, cell):
-    """The steps of `run` that are frames of `cell`: the cell finds the contacts, and the other parts are those of the run. Raises NotMeasured if the
-    cell has other contacts. The weight of a step says how many it stands for, over their mean."""
+    """The steps of `run` that are frames of `cell`: the cell finds the contacts, and the other parts are
+    those of the run. Raises NotMeasured if the cell has other contacts. The weight of a step says how many it
+    stands for, over their mean."""
     steps = {step["step"]: step for step in run.steps}
     check_contacts(cell, steps)
     seconds, stages = frames_of(cell, "frame"), _stages(cell)
     made = copy.copy(run)
-    made.is_composed, made.name, made.location = True, f"composed-{run.name.removeprefix('sim-')}", f"{run.location} {cell.locations[0]}"
+    made.is_composed, made.name, made.location = (
+        True,
+        f"composed-{run.name.removeprefix('sim-')}",
+        f"{run.location} {cell.locations[0]}",
+    )
     frames = sorted(set(seconds) & set(steps))
-    made.steps = [{**_with_frame(steps[frame], seconds[frame], stages[frame]), "weight": weight} for frame, weight in zip(frames, weights_of(frames))]
-    made.run = {**run.run, "algorithm": cell.algorithm, "preset": cell.preset, "settings": cell.settings, "devices": [cell.device]}
+    made.steps = [
+        {**_with_frame(steps[frame], seconds[frame], stages[frame]), "weight": weight}
+        for frame, weight in zip(frames, weights_of(frames))
+    ]
+    made.run = {
+        **run.run,
+        "algorithm": cell.algorithm,
+        "preset": cell.preset,
+        "settings": cell.settings,
+        "devices": [cell.device],
+    }
     return made
 
 
 def composed_share_of(run, composition):
-    """Seconds of composed steps over those of a simulation with the same data path, in the steps that both have: (value, number of steps)."""
+    """Seconds of composed steps over those of a simulation with the same data path, in the steps that both
+    have: (value, number of steps)."""
     real = {step["step"]: step["host_ns"]["step"] for step in run.steps}
     common = [step for step in composition.steps if step["step"] in real]
     if not common:
         return math.nan, 0
-    return sum(step["host_ns"]["step"] for step in common) / sum(real[step["step"]] for step in common), len(common)
+    return sum(step["host_ns"]["step"] for step in common) / sum(real[step["step"]] for step in common), len(
+        common
+    )

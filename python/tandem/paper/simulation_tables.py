@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Tables 3, 6 and 7: whole simulations. Runs of one scene are compared over the steps that all of them have."""
+"""Tables 3, 6 and 7: whole simulations. Runs of one scene are compared over the steps that all of them
+have."""
+
 import statistics
 
 from .folder import STEPS_OF_PAPER, paper_table
@@ -7,14 +9,19 @@ from .simulation import composed_share_of
 from .tables import Table, ordered, paper_rows, ratio, written
 
 KINDS = ("sim-", "host-", "serial-", "parallel-")
-COMMON = ("Rows of one scene are sums over the same steps from step 0, as many as its shortest run has (column steps). The paper's are of 500 steps. Rows with 'composed' "
-          "are frames of that recording, measured with the published path, beside the solver of the recording; each counts for the steps nearest to it, and their minutes are 500 times the mean step.")
+COMMON = (
+    "Rows of one scene are sums over the same steps from step 0, as many as its shortest run has (column steps). The paper's are of 500 steps. Rows with 'composed' "
+    "are frames of that recording, measured with the published path, beside the solver of the recording; each counts for the steps nearest to it, and their minutes are 500 times the mean step."
+)
 
 
 def common_runs(folder, kinds=KINDS):
     """The simulations of these kinds, each cut to the steps that all runs with its label have."""
     runs = [run for kind in kinds for run in folder.simulations(kind)]
-    shortest = {label: min(len(run.steps) for run in runs if run.label == label) for label in {run.label for run in runs}}
+    shortest = {
+        label: min(len(run.steps) for run in runs if run.label == label)
+        for label in {run.label for run in runs}
+    }
     return [run.first(shortest[run.label]) for run in runs]
 
 
@@ -22,8 +29,13 @@ def percentages(simulation):
     """Percent of the total time by part, from sums over all steps, as in the paper's Table 3."""
     total = simulation.host("step")
     start = simulation.stage("transform") + simulation.stage("refit")
-    parts = {"solver": simulation.host("solve") + simulation.host("assemble"), "initialization": start, "broad": simulation.host("broad"),
-             "narrow": simulation.host("narrow") - start, "contact_reduction": simulation.host("reduce")}
+    parts = {
+        "solver": simulation.host("solve") + simulation.host("assemble"),
+        "initialization": start,
+        "broad": simulation.host("broad"),
+        "narrow": simulation.host("narrow") - start,
+        "contact_reduction": simulation.host("reduce"),
+    }
     return {f"{name}_percent": 100 * seconds / total for name, seconds in parts.items()}
 
 
@@ -39,21 +51,36 @@ def _minutes(run, seconds):
 
 
 def _row(run, **columns):
-    steps = f"{len(run.steps)} of {run.steps[0]['step']}:{run.steps[-1]['step']}" if run.is_composed else len(run.steps)
-    return {"scene": run.label, "source": "ours", "device": run.run["devices"][0]["id"], "method": run.method,
-            "data_path": data_path(run) + (", composed" if run.is_composed else ""), **columns, "steps": steps, "records": run.location}
+    steps = (
+        f"{len(run.steps)} of {run.steps[0]['step']}:{run.steps[-1]['step']}"
+        if run.is_composed
+        else len(run.steps)
+    )
+    return {
+        "scene": run.label,
+        "source": "ours",
+        "device": run.run["devices"][0]["id"],
+        "method": run.method,
+        "data_path": data_path(run) + (", composed" if run.is_composed else ""),
+        **columns,
+        "steps": steps,
+        "records": run.location,
+    }
 
 
 def _composition_note(folder):
-    """How near frames that were measured apart, with the other parts of a simulation that ran with the published path, are to that simulation."""
+    """How near frames that were measured apart, with the other parts of a simulation that ran with the
+    published path, are to that simulation."""
     texts = []
     for real in folder.simulations("serial-"):
         scene = real.name.removeprefix("serial-")
         made = folder.composition_or_none(real, f"check-{scene}")
         value, count = composed_share_of(real, made) if made else (None, 0)
         if count:
-            texts.append(f"In {count} steps of {scene}, frames measured apart take {written(value)} times as long, with the other parts of a simulation with the published path, "
-                         "as that simulation.")
+            texts.append(
+                f"In {count} steps of {scene}, frames measured apart take {written(value)} times as long, with the other parts of a simulation with the published path, "
+                "as that simulation."
+            )
     return tuple(texts)
 
 
@@ -65,8 +92,14 @@ def _convergence_note(runs):
         if limit is None or any("deepest_m" not in step for step in run.steps):
             continue
         capped = sum(step["iterations"] >= float(limit) for step in run.steps)
-        texts.append(f"{run.name} {written(max(step['deepest_m'] for step in run.steps))} m, {capped} of {len(run.steps)}")
-    return (f"Deepest overlap, and steps whose solver reached its limit of passes: {'; '.join(texts)}.",) if texts else ()
+        texts.append(
+            f"{run.name} {written(max(step['deepest_m'] for step in run.steps))} m, {capped} of {len(run.steps)}"
+        )
+    return (
+        (f"Deepest overlap, and steps whose solver reached its limit of passes: {'; '.join(texts)}.",)
+        if texts
+        else ()
+    )
 
 
 def _solver_note(folder):
@@ -76,34 +109,85 @@ def _solver_note(folder):
         ours = folder.simulation(f"sim-{run.name.removeprefix('solver-')}")
         count = min(len(run.steps), len(ours.steps)) if ours else 0
         if count:
-            pairs = [(*(statistics.fmean(step[name] for step in one.steps) for name in ("iterations", "contacts_kept")), max(step["deepest_m"] for step in one.steps))
-                     for one in (run.first(count), ours.first(count))]
-            passes, kept, deepest = (f"{written(theirs)} instead of {written(own)}" for theirs, own in zip(*pairs))
-            texts.append(f"{run.scene}, {count} steps: {passes} passes and {kept} contacts kept on average, deepest overlap {deepest} m")
-    return (f"With a relative tolerance of 0.01 and no start from the last step's forces (--dynamics paper): {'; '.join(texts)}.",) if texts else ()
+            pairs = [
+                (
+                    *(
+                        statistics.fmean(step[name] for step in one.steps)
+                        for name in ("iterations", "contacts_kept")
+                    ),
+                    max(step["deepest_m"] for step in one.steps),
+                )
+                for one in (run.first(count), ours.first(count))
+            ]
+            passes, kept, deepest = (
+                f"{written(theirs)} instead of {written(own)}" for theirs, own in zip(*pairs)
+            )
+            texts.append(
+                f"{run.scene}, {count} steps: {passes} passes and {kept} contacts kept on average, deepest overlap {deepest} m"
+            )
+    return (
+        (
+            f"With a relative tolerance of 0.01 and no start from the last step's forces (--dynamics paper): {'; '.join(texts)}.",
+        )
+        if texts
+        else ()
+    )
 
 
 def table3(folder):
-    columns = ("solver_percent", "initialization_percent", "broad_percent", "narrow_percent", "contact_reduction_percent")
+    columns = (
+        "solver_percent",
+        "initialization_percent",
+        "broad_percent",
+        "narrow_percent",
+        "contact_reduction_percent",
+    )
     rows = paper_rows(paper_table(3), {"total_min": "total_min", **{name: name for name in columns}})
-    rows += [_row(run, total_min=_minutes(run, run.host("step")), **percentages(run)) for run in common_runs(folder) + folder.compositions()]
+    rows += [
+        _row(run, total_min=_minutes(run, run.host("step")), **percentages(run))
+        for run in common_runs(folder) + folder.compositions()
+    ]
     for row in rows:
         row["collision_percent"] = sum(row[name] or 0 for name in columns[1:])
         row.setdefault("steps", STEPS_OF_PAPER)
-    return Table(3, "Parts of the time of a simulation", ordered(rows),
-                 (COMMON, "The paper's are means of ten runs of its published path; ours are one run each. Our solver, including the assembly of its rows, runs on "
-                  "one thread, as the paper's does. It has no relative tolerance and starts from the last step's forces; the paper's stops at a relative "
-                  "tolerance of 0.01.", *_convergence_note(folder.simulations("sim-")), *_solver_note(folder), *_composition_note(folder)))
+    return Table(
+        3,
+        "Parts of the time of a simulation",
+        ordered(rows),
+        (
+            COMMON,
+            "The paper's are means of ten runs of its published path; ours are one run each. Our solver, including the assembly of its rows, runs on "
+            "one thread, as the paper's does. It has no relative tolerance and starts from the last step's forces; the paper's stops at a relative "
+            "tolerance of 0.01.",
+            *_convergence_note(folder.simulations("sim-")),
+            *_solver_note(folder),
+            *_composition_note(folder),
+        ),
+    )
 
 
 def table6(folder):
-    rows = paper_rows(paper_table(6), {name: name for name in ("total_min", "read_min", "write_min", "read_percent", "write_percent")})
+    rows = paper_rows(
+        paper_table(6),
+        {name: name for name in ("total_min", "read_min", "write_min", "read_percent", "write_percent")},
+    )
     for run in common_runs(folder) + folder.compositions():
         total, read, write = run.host("step"), run.stage("read", "device_ns"), run.stage("write", "device_ns")
-        rows.append(_row(run, total_min=_minutes(run, total), read_min=_minutes(run, read), write_min=_minutes(run, write), read_percent=100 * read / total, write_percent=100 * write / total))
+        rows.append(
+            _row(
+                run,
+                total_min=_minutes(run, total),
+                read_min=_minutes(run, read),
+                write_min=_minutes(run, write),
+                read_percent=100 * read / total,
+                write_percent=100 * write / total,
+            )
+        )
     for row in rows:
         row.setdefault("steps", STEPS_OF_PAPER)
-    return Table(6, "Transfers of a simulation", ordered(rows), (COMMON, "Device times of uploads and downloads."))
+    return Table(
+        6, "Transfers of a simulation", ordered(rows), (COMMON, "Device times of uploads and downloads.")
+    )
 
 
 def table7(folder):
@@ -114,4 +198,9 @@ def table7(folder):
     for row in rows:
         row["traverse_over_contact"] = ratio(row["traverse_min"], row["contact_min"])
         row.setdefault("steps", STEPS_OF_PAPER)
-    return Table(7, "Kernels of a simulation", ordered(rows), (COMMON, "Device times; a resident frame of rigid bodies is transformed in its refit."))
+    return Table(
+        7,
+        "Kernels of a simulation",
+        ordered(rows),
+        (COMMON, "Device times; a resident frame of rigid bodies is transformed in its refit."),
+    )

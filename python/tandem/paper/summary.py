@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Writes verdicts.md, the answer and one row for each claim, for readers of a folder of results without a browser."""
+"""Writes verdicts.md, the answer and one row for each claim, for readers of a folder of results without a
+browser."""
+
 from .. import markdown
 from ..text_lines import visible
 from . import headline
@@ -21,13 +23,23 @@ def _ours(claim):
     if not tested:
         return claim.lines[0].reason
     unit = claim.fields.get("unit", "")
-    values = "; ".join(_value(line, unit) for line in tested[:MOST_SCENES]) + ("; and more" if len(tested) > MOST_SCENES else "")
+    values = "; ".join(_value(line, unit) for line in tested[:MOST_SCENES]) + (
+        "; and more" if len(tested) > MOST_SCENES else ""
+    )
     return values if unit == "%" else f"{values} {unit}"
 
 
 def write(folder, claims):
-    rows = [[claim.fields["says"], claim.fields["where"], f"**{claim.verdict}**", _ours(claim)] for claim in claims]
-    text = ["# The paper's claims and our records", "", "For those who look for one claim. `tandem paper` writes this page. [index.html](index.html) has intervals and records.", ""]
+    rows = [
+        [claim.fields["says"], claim.fields["where"], f"**{claim.verdict}**", _ours(claim)]
+        for claim in claims
+    ]
+    text = [
+        "# The paper's claims and our records",
+        "",
+        "For those who look for one claim. `tandem paper` writes this page. [index.html](index.html) has intervals and records.",
+        "",
+    ]
     text += [sentence + "\n" for sentence in headline.sentences(folder, claims)]
     text += [markdown.table(["the paper states", "where", "verdict", "ours"], rows)]
     (folder.path / "verdicts.md").write_text(visible("\n".join(text).rstrip() + "\n", "\n"))

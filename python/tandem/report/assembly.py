@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Assembles a self-contained page from its own files, the libraries that it uses, and its data."""
+
 import dataclasses
 import pathlib
 
@@ -8,13 +9,26 @@ from ..text_lines import visible, visible_json
 from .libraries import CHARTS, SCENES, scripts
 
 FOLDER = pathlib.Path(__file__).parent / "page"
-CHART_SCRIPTS = ("words.js", "tables.js", "axes.js", "charts.js", "figures.js", "history.js", "stages.js", "sweeps.js", "errors.js", "kernels.js")
+CHART_SCRIPTS = (
+    "words.js",
+    "tables.js",
+    "axes.js",
+    "charts.js",
+    "figures.js",
+    "history.js",
+    "stages.js",
+    "sweeps.js",
+    "errors.js",
+    "kernels.js",
+)
 SCENE_SCRIPTS = ("contacts.js", "scene.js", "scene_controls.js")
 
 
 @dataclasses.dataclass
 class Page:
-    """libraries: texts of the libraries of the page; has_charts, has_scene: which of its own scripts it has; data: {id: JSON text}."""
+    """libraries: texts of the libraries of the page; has_charts, has_scene: which of its own scripts it has;
+    data: {id: JSON text}."""
+
     title: str
     libraries: list = dataclasses.field(default_factory=list)
     has_charts: bool = False
@@ -48,14 +62,27 @@ def _script_element(script):
 
 
 def html_of(page):
-    own = ["data.js", *(CHART_SCRIPTS if page.has_charts else ()), *(SCENE_SCRIPTS if page.has_scene else ()), "page.js"]
-    elements = [*(_data_element(*item) for item in page.data.items()), *map(_script_element, [*page.libraries, *map(_own, own)])]
-    html = _own("page.html").replace("/*styles*/", _own("page.css"), 1).replace("<!--title-->", _escaped(page.title))
+    own = [
+        "data.js",
+        *(CHART_SCRIPTS if page.has_charts else ()),
+        *(SCENE_SCRIPTS if page.has_scene else ()),
+        "page.js",
+    ]
+    elements = [
+        *(_data_element(*item) for item in page.data.items()),
+        *map(_script_element, [*page.libraries, *map(_own, own)]),
+    ]
+    html = (
+        _own("page.html")
+        .replace("/*styles*/", _own("page.css"), 1)
+        .replace("<!--title-->", _escaped(page.title))
+    )
     return html.replace("<!--scripts-->", "".join(elements), 1)
 
 
 def write_page(path, page):
-    """Writes the page, atomically, to a file that check_output() has accepted. Returns its size in bytes. Raises OutputError."""
+    """Writes the page, atomically, to a file that check_output() has accepted. Returns its size in bytes.
+    Raises OutputError."""
     # Names of files and texts of records need not be valid UTF-8.
     html = html_of(page).encode(errors="replace")
     replace_whole(path, html)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Short texts on the state of the machine while a cell was sampled, and on the quality of its samples."""
+
 import json
 
 from .numbers import is_number
@@ -15,8 +16,13 @@ def _numbers(value):
 
 
 def _range(before, after, field, unit=""):
-    """"1980 MHz" or "41 to 52 °C", from the readings before and after the rounds; empty if there are none."""
-    found = [value for reading in (before, after) if isinstance(reading, dict) for value in _numbers(reading.get(field))]
+    """ "1980 MHz" or "41 to 52 °C", from the readings before and after the rounds; empty if there are none."""
+    found = [
+        value
+        for reading in (before, after)
+        if isinstance(reading, dict)
+        for value in _numbers(reading.get(field))
+    ]
     if not found:
         return ""
     low, high = f"{min(found):.4g}", f"{max(found):.4g}"
@@ -26,8 +32,12 @@ def _range(before, after, field, unit=""):
 def _gpu_texts(before, after):
     clocks = _range(before, after, "sm_mhz", " MHz")
     processes = _range(before, after, "other_processes")
-    return [clocks and f"GPU at {clocks}", _range(before, after, "temperature_c", " °C"), _range(before, after, "power_w", " W"),
-            processes and processes != "0" and f"other processes on it: {processes}"]
+    return [
+        clocks and f"GPU at {clocks}",
+        _range(before, after, "temperature_c", " °C"),
+        _range(before, after, "power_w", " W"),
+        processes and processes != "0" and f"other processes on it: {processes}",
+    ]
 
 
 def _processor_texts(before, after):
@@ -36,7 +46,8 @@ def _processor_texts(before, after):
 
 
 def conditions_text(record):
-    """State of the machine during sampling. Raises KeyError and TypeError for a record that lacks fields of its schema."""
+    """State of the machine during sampling. Raises KeyError and TypeError for a record that lacks fields of
+    its schema."""
     conditions = record.get("conditions")
     if not isinstance(conditions, dict):
         return "not recorded"
@@ -45,7 +56,9 @@ def conditions_text(record):
     parts += _processor_texts(before["processor"], after["processor"])
     disturbed = conditions["disturbed"]
     if disturbed:
-        parts.append(f"{len(disturbed)} doubtful {'round' if len(disturbed) == 1 else 'rounds'}, the first: {disturbed[0]['why']}")
+        parts.append(
+            f"{len(disturbed)} doubtful {'round' if len(disturbed) == 1 else 'rounds'}, the first: {disturbed[0]['why']}"
+        )
     return ", ".join(part for part in parts if part)
 
 
@@ -54,8 +67,10 @@ def sampling_text(record):
     if not isinstance(sampling, dict):
         return "not recorded"
     outliers, drift = sampling.get("outliers"), sampling.get("drift")
-    parts = [sampling.get("converged") is False and "interval wider than requested",
-             sampling.get("interrupted") is True and "interrupted before it had enough samples",
-             is_number(outliers) and outliers != 0 and f"outliers: {json.dumps(outliers)}",
-             is_number(drift) and f"drifted by {100 * drift:.2g} %"]
+    parts = [
+        sampling.get("converged") is False and "interval wider than requested",
+        sampling.get("interrupted") is True and "interrupted before it had enough samples",
+        is_number(outliers) and outliers != 0 and f"outliers: {json.dumps(outliers)}",
+        is_number(drift) and f"drifted by {100 * drift:.2g} %",
+    ]
     return ", ".join(part for part in parts if part) or "no problems"

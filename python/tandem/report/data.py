@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Makes the JSON text of records for a page, within a limit of its size."""
+
 import dataclasses
 import json
 
@@ -17,8 +18,9 @@ SHARED = [column for column, is_shared in enumerate(FIELDS.values()) if is_share
 
 @dataclasses.dataclass
 class PageData:
-    """The JSON text, the number of its cells, notes on records that are left out, and the page's sentences on each group of cells and on all
-    together."""
+    """The JSON text, the number of its cells, notes on records that are left out, and the page's sentences on
+    each group of cells and on all together."""
+
     json: str
     cells: int
     notes: list
@@ -49,28 +51,51 @@ class _Interned:
 
     def row(self, row):
         """The row with numbers instead of values in SHARED columns; None stays None."""
-        return [self.number(value) if column in SHARED and value is not None else value for column, value in enumerate(row)]
+        return [
+            self.number(value) if column in SHARED and value is not None else value
+            for column, value in enumerate(row)
+        ]
 
 
 def _fitting_cells(records, max_bytes, values):
-    """Interns the rows of cells and returns those cells that fit. The last cells are left out, with a note, if there are too many."""
+    """Interns the rows of cells and returns those cells that fit. The last cells are left out, with a note,
+    if there are too many."""
     size = 0
     for count, cell in enumerate(records.cells):
         cell.row = values.row(cell.row)
         size += size_of(dumped(cell.row)) + LABEL_AND_GROUP_BYTES
         if size + values.bytes > max_bytes:
-            records.notes.append(f"the last {len(records.cells) - count} of {len(records.cells)} cells are left out, so that the page stays small; "
-                                 "give fewer files or fewer lines")
+            records.notes.append(
+                f"the last {len(records.cells) - count} of {len(records.cells)} cells are left out, so that the page stays small; "
+                "give fewer files or fewer lines"
+            )
             return records.cells[:count]
     return records.cells
 
 
 def _group(group, cells):
-    ranked = [[one.cell, rounded(one.ratio.value), rounded(one.ratio.low), rounded(one.ratio.high),
-               one.is_told_apart if one.has_interval else None] for one in group.ranked]
+    ranked = [
+        [
+            one.cell,
+            rounded(one.ratio.value),
+            rounded(one.ratio.low),
+            rounded(one.ratio.high),
+            one.is_told_apart if one.has_interval else None,
+        ]
+        for one in group.ranked
+    ]
     named = named_cells(group, cells)
-    return {"title": group.title, "cells": group.cells, "ranked": ranked, "differ": group.answers_differ, "words": group_sentences(group, cells),
-            "lead": {"title": title(named, group.answers_differ), "which": "" if group.answers_differ else which_text(named)}}
+    return {
+        "title": group.title,
+        "cells": group.cells,
+        "ranked": ranked,
+        "differ": group.answers_differ,
+        "words": group_sentences(group, cells),
+        "lead": {
+            "title": title(named, group.answers_differ),
+            "which": "" if group.answers_differ else which_text(named),
+        },
+    }
 
 
 class _Details:
@@ -99,20 +124,36 @@ def _cell_data(records, values, max_bytes):
         for number, label in zip(group.cells, group.labels):
             cells[number].row.append(label)
     history, moves = shown_history(cells)
-    made = {"fields": list(FIELDS), "shared": [name for name, is_shared in FIELDS.items() if is_shared], "values": values.values,
-            "history": history, "words": [*summary_sentences(groups, cells), *moves], "groups": [_group(group, cells) for group in groups],
-            "sweeps": sweeps_of(cells, records.verdicts), "cells": [cell.row for cell in cells], "older": [number for number, cell in enumerate(cells) if cell.is_older]}
-    used = sum(size_of(dumped(made[name])) for name in ("cells", "groups", "sweeps", "history")) + values.bytes
+    made = {
+        "fields": list(FIELDS),
+        "shared": [name for name, is_shared in FIELDS.items() if is_shared],
+        "values": values.values,
+        "history": history,
+        "words": [*summary_sentences(groups, cells), *moves],
+        "groups": [_group(group, cells) for group in groups],
+        "sweeps": sweeps_of(cells, records.verdicts),
+        "cells": [cell.row for cell in cells],
+        "older": [number for number, cell in enumerate(cells) if cell.is_older],
+    }
+    used = (
+        sum(size_of(dumped(made[name])) for name in ("cells", "groups", "sweeps", "history")) + values.bytes
+    )
     details = _Details(max(max_bytes - used, 0))
-    made |= {"curves": details.fitting([cell.curve for cell in cells]), "rounds": details.fitting([cell.rounds for cell in cells])}
+    made |= {
+        "curves": details.fitting([cell.curve for cell in cells]),
+        "rounds": details.fitting([cell.rounds for cell in cells]),
+    }
     if details.missing:
-        records.notes.append(f"times by frame or by round of some cells are left out ({details.missing} lists), so that the page stays small")
+        records.notes.append(
+            f"times by frame or by round of some cells are left out ({details.missing} lists), so that the page stays small"
+        )
     return made
 
 
 def data_of(records, max_bytes, program, date):
-    """PageData of at most about `max_bytes`: cells with their groups and sentences, profiles, ceilings, simulations. Larger data are cut:
-    curves and rounds are left out first, then the last cells. `program` and `date`: version of the program and time, for the page."""
+    """PageData of at most about `max_bytes`: cells with their groups and sentences, profiles, ceilings,
+    simulations. Larger data are cut: curves and rounds are left out first, then the last cells. `program` and
+    `date`: version of the program and time, for the page."""
     rest = {"profiles": records.profiles, "ceilings": records.ceilings, "simulations": records.simulations}
     cell_bytes = max(max_bytes - sum(size_of(dumped(part)) for part in rest.values()), 0)
     made = {"program": program, "date": date} | _cell_data(records, _Interned(), cell_bytes) | rest

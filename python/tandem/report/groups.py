@@ -1,19 +1,29 @@
 # SPDX-License-Identifier: MIT
 """Groups of cells with comparable times, ranked by speed."""
+
 import dataclasses
 
 from ..comparison.naming import label
 from ..verdicts import TimedCell, verdict_of
 
 # Settings that determine the candidate pairs, and their default values, which titles leave out.
-BOUNDS = {"k": "", "axes": "standard", "precision": "float", "rounding": "safe", "placement": "rounded", "origin": "world", "output": "pairs"}
+BOUNDS = {
+    "k": "",
+    "axes": "standard",
+    "precision": "float",
+    "rounding": "safe",
+    "placement": "rounded",
+    "origin": "world",
+    "output": "pairs",
+}
 
 
 @dataclasses.dataclass
 class Group:
-    """Cells of one scene, frame range, devices, bounds and output. cells: their numbers, in order. labels: the values in which they differ.
-    ranked: verdicts.Ranked of correct cells without older records, the fastest first. answers_differ: ranked cells have different answers,
-    so that none is the fastest."""
+    """Cells of one scene, frame range, devices, bounds and output. cells: their numbers, in order. labels:
+    the values in which they differ. ranked: verdicts.Ranked of correct cells without older records, the
+    fastest first. answers_differ: ranked cells have different answers, so that none is the fastest."""
+
     title: str
     cells: list = dataclasses.field(default_factory=list)
     labels: list = dataclasses.field(default_factory=list)
@@ -27,13 +37,21 @@ def _bounds(recorded):
 
 def _key(cell):
     recorded = cell.recorded
-    return (cell.scene_digest, cell.scene, *(recorded.names[name] for name in ("devices", "model", "driver", "frames", "handling")),
-            *_bounds(recorded).values())
+    return (
+        cell.scene_digest,
+        cell.scene,
+        *(recorded.names[name] for name in ("devices", "model", "driver", "frames", "handling")),
+        *_bounds(recorded).values(),
+    )
 
 
 def _title(cell, scene):
     names = cell.recorded.names
-    parts = [scene, names["frames"], *(f"{name} = {value}" for name, value in _bounds(cell.recorded).items() if value != BOUNDS[name])]
+    parts = [
+        scene,
+        names["frames"],
+        *(f"{name} = {value}" for name, value in _bounds(cell.recorded).items() if value != BOUNDS[name]),
+    ]
     parts += [names["handling"]] if names["handling"] else []
     return f"{', '.join(parts)}, on {names['devices']} ({names['model']})"
 
@@ -47,7 +65,14 @@ def is_rankable(cell):
 
 def timed(recorded):
     """The verdicts.TimedCell of a RecordedCell."""
-    return TimedCell(recorded.key, recorded.rounds, recorded.session, recorded.names["devices"], recorded.chosen, recorded.pairs)
+    return TimedCell(
+        recorded.key,
+        recorded.rounds,
+        recorded.session,
+        recorded.names["devices"],
+        recorded.chosen,
+        recorded.pairs,
+    )
 
 
 def _rank(group, cells, recorded):
@@ -58,7 +83,8 @@ def _rank(group, cells, recorded):
 
 
 def groups_of(cells, verdicts=None):
-    """Groups of all cells, ranked by `verdicts`, the RecordedVerdicts of their files, where there are some. A title has the name of the scene if it is unique, otherwise the key."""
+    """Groups of all cells, ranked by `verdicts`, the RecordedVerdicts of their files, where there are some. A
+    title has the name of the scene if it is unique, otherwise the key."""
     groups, digests = {}, {}
     for cell in cells:
         digests.setdefault(cell.scene_name, set()).add(cell.scene_digest)

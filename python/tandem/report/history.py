@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The history of cells that several programs recorded: the trend of each, and the commit where its time moved, by the rule of 'tandem compare'."""
+"""The history of cells that several programs recorded: the trend of each, and the commit where its time
+moved, by the rule of 'tandem compare'."""
+
 import dataclasses
 import statistics
 
@@ -16,8 +18,9 @@ DATE = list(FIELDS).index("date")
 
 @dataclasses.dataclass
 class Point:
-    """The records of one cell by one program, its sessions pooled. compared: the matching.ComparedCell with the cell since which the time has
-    not moved; None for the first point."""
+    """The records of one cell by one program, its sessions pooled. compared: the matching.ComparedCell with
+    the cell since which the time has not moved; None for the first point."""
+
     program: int
     cell: object
     compared: object = None
@@ -34,8 +37,9 @@ class Point:
 
 @dataclasses.dataclass
 class History:
-    """programs: texts of commits, the oldest first. points: {key: Points in this order}, of the keys that several programs recorded.
-    left_out: number of keys beyond MAX_KEYS."""
+    """programs: texts of commits, the oldest first. points: {key: Points in this order}, of the keys that
+    several programs recorded. left_out: number of keys beyond MAX_KEYS."""
+
     programs: list
     points: dict
     left_out: int = 0
@@ -47,7 +51,8 @@ class _Side:
 
 
 def _ordered(cells):
-    """The programs of these cells by the date of their first record; in the order of the records if one has no date."""
+    """The programs of these cells by the date of their first record; in the order of the records if one has
+    no date."""
     dates = {}
     for cell in cells:
         dates.setdefault(cell.recorded.program, []).append(cell.row[DATE] or "")
@@ -56,7 +61,8 @@ def _ordered(cells):
 
 
 def _texts(programs):
-    """Commits of seven digits. A program with uncommitted changes says so, and programs of equal texts are numbered."""
+    """Commits of seven digits. A program with uncommitted changes says so, and programs of equal texts are
+    numbered."""
     texts, seen = [], {}
     for commit, dirty, _ in programs:
         text = (commit[:7] or "unknown") + (" with changes" if dirty else "")
@@ -71,14 +77,23 @@ def _pooled(cells):
 
 
 def _find_moves(points, programs):
-    """Compares each program's cells with those since which their times have not moved. Steps share LEVEL equally, and cells of a step by Holm's
-    correction, so that LEVEL is that of the page."""
+    """Compares each program's cells with those since which their times have not moved. Steps share LEVEL
+    equally, and cells of a step by Holm's correction, so that LEVEL is that of the page."""
     base = {}
     for number in range(programs):
-        current = {key: point for key, all_points in points.items() for point in all_points if point.program == number}
+        current = {
+            key: point
+            for key, all_points in points.items()
+            for point in all_points
+            if point.program == number
+        }
         known = [key for key in current if key in base]
         if known:
-            matched = match(_Side([base[key] for key in known]), _Side([current[key].cell for key in known]), level=LEVEL / (programs - 1))
+            matched = match(
+                _Side([base[key] for key in known]),
+                _Side([current[key].cell for key in known]),
+                level=LEVEL / (programs - 1),
+            )
             for key, compared in zip(known, matched.cells):
                 current[key].compared = compared
         base |= {key: point.cell for key, point in current.items() if key not in base or point.moved}
@@ -90,12 +105,17 @@ def history_of(cells):
     programs = _ordered(good)
     by_key = {}
     for cell in good:
-        by_key.setdefault(cell.recorded.key, {}).setdefault(programs.index(cell.recorded.program), []).append(cell.recorded)
+        by_key.setdefault(cell.recorded.key, {}).setdefault(programs.index(cell.recorded.program), []).append(
+            cell.recorded
+        )
     several = {key: found for key, found in by_key.items() if len(found) > 1}
     if not several:
         return None
     shown = dict(list(several.items())[:MAX_KEYS])
-    points = {key: [Point(program, _pooled(found[program])) for program in sorted(found)] for key, found in shown.items()}
+    points = {
+        key: [Point(program, _pooled(found[program])) for program in sorted(found)]
+        for key, found in shown.items()
+    }
     _find_moves(points, len(programs))
     return History(_texts(programs), points, len(several) - len(shown))
 
@@ -117,15 +137,24 @@ def _title(name, points, programs):
 
 
 def _point(point):
-    compared, row = point.compared, [point.program, rounded(point.ms), point.cell.all_rounds, point.cell.sessions or 1]
+    compared, row = (
+        point.compared,
+        [point.program, rounded(point.ms), point.cell.all_rounds, point.cell.sessions or 1],
+    )
     if compared is None:
         return [*row, None, None, ""]
     ratio = compared.ratio
-    return [*row, ratio and [optional(value) for value in (ratio.value, ratio.low, ratio.high)], point.moved, VERDICTS[compared.verdict]]
+    return [
+        *row,
+        ratio and [optional(value) for value in (ratio.value, ratio.low, ratio.high)],
+        point.moved,
+        VERDICTS[compared.verdict],
+    ]
 
 
 def shown_history(cells):
-    """The History of ShownCells as JSON values, and its sentences; None and no sentence if no cell has records of two programs."""
+    """The History of ShownCells as JSON values, and its sentences; None and no sentence if no cell has
+    records of two programs."""
     found = history_of(cells)
     if found is None:
         return None, []
@@ -133,7 +162,17 @@ def shown_history(cells):
     titles = {key: _title(labels[key], points, found.programs) for key, points in found.points.items()}
     moved = [key for key, points in found.points.items() if any(point.moved for point in points)]
     keys = [*moved, *(key for key in found.points if key not in moved)]
-    named = "".join(f" {titles[key]}." for key in moved[:MAX_NAMED]) + (" The chart has the others." if len(moved) > MAX_NAMED else "")
-    sentence = f"Over {len(found.programs)} commits, {len(moved) or 'none'} of {len(keys)} cells moved.{named}"
-    return {"programs": found.programs, "left_out": found.left_out,
-            "cells": [{"label": labels[key], "title": titles[key], "points": [*map(_point, found.points[key])]} for key in keys]}, [sentence]
+    named = "".join(f" {titles[key]}." for key in moved[:MAX_NAMED]) + (
+        " The chart has the others." if len(moved) > MAX_NAMED else ""
+    )
+    sentence = (
+        f"Over {len(found.programs)} commits, {len(moved) or 'none'} of {len(keys)} cells moved.{named}"
+    )
+    return {
+        "programs": found.programs,
+        "left_out": found.left_out,
+        "cells": [
+            {"label": labels[key], "title": titles[key], "points": [*map(_point, found.points[key])]}
+            for key in keys
+        ],
+    }, [sentence]

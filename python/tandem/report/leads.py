@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The verdict on cells in words, made once and used by sentences, titles and tables of the page."""
+
 import dataclasses
 
 from .numbers import digits
@@ -10,6 +11,7 @@ ONE_ROUND = "one round: no interval"
 @dataclasses.dataclass(frozen=True)
 class Named:
     """A ranked cell. ranked: its verdicts.Ranked; name: its text; ms: its milliseconds a frame."""
+
     ranked: object
     name: str
     ms: float
@@ -28,13 +30,20 @@ def compared_text(ranked):
 
 
 def _is_the_fastest(cells):
-    """Whether the second takes longer with its whole interval. Paired ratios below 1 are possible: order is by medians."""
+    """Whether the second takes longer with its whole interval. Paired ratios below 1 are possible: order is
+    by medians."""
     return len(cells) > 1 and cells[1].ranked.is_told_apart and cells[1].ranked.ratio.low > 1
 
 
 def which_text(cells):
     """What the first of Named cells is, to be put behind its name: ", the fastest"."""
-    return ", the fastest" if _is_the_fastest(cells) else ", which has the lowest median" if len(cells) > 1 else ""
+    return (
+        ", the fastest"
+        if _is_the_fastest(cells)
+        else ", which has the lowest median"
+        if len(cells) > 1
+        else ""
+    )
 
 
 def lead_sentence(cells, of=""):
@@ -51,7 +60,11 @@ def title(cells, answers_differ):
     if answers_differ:
         return "Answers differ: these times are of different work"
     if len(cells) < 2:
-        return f"{cells[0].name} takes {digits(cells[0].ms)} ms a frame" if cells else "None of these cells has valid times"
+        return (
+            f"{cells[0].name} takes {digits(cells[0].ms)} ms a frame"
+            if cells
+            else "None of these cells has valid times"
+        )
     first, second = cells[0], cells[1].ranked
     ratio, interval = digits(second.ratio.value), interval_text(second.ratio, second.has_interval)
     if _is_the_fastest(cells):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Data of profiles, ceilings and simulations for the page. Each function raises one of lines.FIELD_ERRORS for a record that lacks fields
-of its schema."""
+"""Data of profiles, ceilings and simulations for the page. Each function raises one of lines.FIELD_ERRORS for
+a record that lacks fields of its schema."""
+
 import dataclasses
 import os
 
@@ -8,8 +9,18 @@ from ..cell_rows import at
 from .conditions import conditions_text
 from .numbers import count, is_number, number, rounded, text
 
-KERNEL_NUMBERS = ("share", "launches", "bytes", "operations", "bytes_per_s", "operations_per_s", "of_bytes", "of_operations", "over_floor",
-                  "occupancy")
+KERNEL_NUMBERS = (
+    "share",
+    "launches",
+    "bytes",
+    "operations",
+    "bytes_per_s",
+    "operations_per_s",
+    "of_bytes",
+    "of_operations",
+    "over_floor",
+    "occupancy",
+)
 CEILINGS = ("bytes_per_s", "cached_bytes_per_s", "operations_per_s")
 HOST_PARTS = ("broad", "narrow", "reduce", "assemble", "solve", "move")
 MAX_RUNS, MAX_STEPS = 40, 600
@@ -20,8 +31,10 @@ def _device_text(device):
 
 
 def _name(record):
-    name = (f"{text(record['algorithm'])} {text(record['preset'])} k = {record['settings'].get('k', '?')}, {text(record['scene']['key'])}, "
-            f"on {_device_text(record['devices'][0])}")
+    name = (
+        f"{text(record['algorithm'])} {text(record['preset'])} k = {record['settings'].get('k', '?')}, {text(record['scene']['key'])}, "
+        f"on {_device_text(record['devices'][0])}"
+    )
     return name if record["status"] == "ok" else f"{text(record['status'])}: {name}"
 
 
@@ -32,8 +45,14 @@ def _number_at(record, name):
 
 def _kernel(kernel):
     ns = kernel["device_ns"]
-    shown = {"entry": text(kernel["entry"]), "stage": text(kernel["stage"]), "ms": [number(ns[name]) / 1e6 for name in ("median", "low", "high")]}
-    return shown | {name: _number_at(kernel, name) for name in KERNEL_NUMBERS} | {"bound": kernel.get("bound")}
+    shown = {
+        "entry": text(kernel["entry"]),
+        "stage": text(kernel["stage"]),
+        "ms": [number(ns[name]) / 1e6 for name in ("median", "low", "high")],
+    }
+    return (
+        shown | {name: _number_at(kernel, name) for name in KERNEL_NUMBERS} | {"bound": kernel.get("bound")}
+    )
 
 
 def _ceiling_conditions(record):
@@ -50,22 +69,38 @@ def _ceiling_conditions(record):
 def shown_profile(record, path):
     """A profile for the page. `path`: the file of the record."""
     ceilings = {name: _number_at(record["ceilings"], name) for name in CEILINGS}
-    return {"name": _name(record), "file": os.path.basename(path), "ceilings": ceilings, "conditions": _ceiling_conditions(record), "kernels": list(map(_kernel, record["kernels"]))}
+    return {
+        "name": _name(record),
+        "file": os.path.basename(path),
+        "ceilings": ceilings,
+        "conditions": _ceiling_conditions(record),
+        "kernels": list(map(_kernel, record["kernels"])),
+    }
 
 
 def shown_ceilings(record):
     device, environment = record["device"], record["environment"]
     commit = f"{environment.get('commit') or 'unknown'}{', with changes' if environment.get('dirty') else ''}"
-    conditions = {"measured on": text(environment["date"]), "driver": text(device["driver"]), "compiler": text(device["compiler"]), "commit": commit}
+    conditions = {
+        "measured on": text(environment["date"]),
+        "driver": text(device["driver"]),
+        "compiler": text(device["compiler"]),
+        "commit": commit,
+    }
     shown = {"device": _device_text(device), "conditions": conditions}
-    values = {name: rounded(number(record[name]["median"])) for name in sorted(record) if isinstance(record[name], dict) and "median" in record[name]}
+    values = {
+        name: rounded(number(record[name]["median"]))
+        for name in sorted(record)
+        if isinstance(record[name], dict) and "median" in record[name]
+    }
     return shown | ({"values": values} if values else {})
 
 
 @dataclasses.dataclass
 class _Run:
-    """Steps of one session; every `stride`-th step if there are more than MAX_STEPS. kept: rows [step, ms by part..., contacts found, contacts
-    kept]."""
+    """Steps of one session; every `stride`-th step if there are more than MAX_STEPS. kept: rows [step, ms by
+    part..., contacts found, contacts kept]."""
+
     name: str
     status: str = "not ended"
     failure: str = ""
@@ -83,7 +118,14 @@ class _Run:
             self.kept = self.kept[::2]
 
     def shown(self):
-        return {"name": self.name, "status": self.status, "failure": self.failure, "steps": self.steps, "parts": list(HOST_PARTS), "kept": self.kept}
+        return {
+            "name": self.name,
+            "status": self.status,
+            "failure": self.failure,
+            "steps": self.steps,
+            "parts": list(HOST_PARTS),
+            "kept": self.kept,
+        }
 
 
 def _step(line):

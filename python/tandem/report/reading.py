@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Reads files with records of any kind for a page."""
+
 import dataclasses
 import json
 import os
@@ -12,14 +13,21 @@ from .shown_cells import shown_cell
 WHAT_TO_GIVE = "give files that 'tandem run --out', 'profile --out', 'simulate --record' or 'devices --measure --out' wrote"
 MAX_CELLS = 6000  # with more, only one record per key is shown
 MAX_OTHER_RECORDS = 200  # profiles, and records of ceilings
-LISTS = {"cell": "cells", "profile": "profiles", "simulation": "simulations", "ceilings": "ceilings",
-         "verdict": "verdicts"}  # attribute of Records by kind
+LISTS = {
+    "cell": "cells",
+    "profile": "profiles",
+    "simulation": "simulations",
+    "ceilings": "ceilings",
+    "verdict": "verdicts",
+}  # attribute of Records by kind
 
 
 @dataclasses.dataclass
 class Records:
-    """cells: ShownCells. cell_records: number of all records of cells; an interrupted record and its continuation count as one. files: the
-    name and the numbers of records of each kind for each file. notes: texts on records left out and incomplete lines."""
+    """cells: ShownCells. cell_records: number of all records of cells; an interrupted record and its
+    continuation count as one. files: the name and the numbers of records of each kind for each file. notes:
+    texts on records left out and incomplete lines."""
+
     cells: list = dataclasses.field(default_factory=list)
     cell_records: int = 0
     profiles: list = dataclasses.field(default_factory=list)
@@ -31,8 +39,9 @@ class Records:
 
 
 class _Cells:
-    """ShownCells by number, in the order of their records. With more than `max_cells`, keeps only one per key. Leaves out copies, records
-    that another record of the same key continues, and records of interrupted cells before a later one."""
+    """ShownCells by number, in the order of their records. With more than `max_cells`, keeps only one per
+    key. Leaves out copies, records that another record of the same key continues, and records of interrupted
+    cells before a later one."""
 
     def __init__(self, max_cells):
         self.max_cells, self.one_per_key = max_cells, False
@@ -41,7 +50,9 @@ class _Cells:
 
     def add(self, cell):
         numbers = self.numbers_by_key.get(cell.recorded.key, [])
-        if any(self.cells[number].continues(cell) or self.cells[number].is_copy_of(cell) for number in numbers):
+        if any(
+            self.cells[number].continues(cell) or self.cells[number].is_copy_of(cell) for number in numbers
+        ):
             return
         interrupted = [number for number in numbers if cell.replaces(self.cells[number])]
         self._remove(interrupted)
@@ -88,8 +99,10 @@ class _Cells:
         if self.older:
             yield f"{self.older} older records of cells that were recorded again are left out"
         if self.left_out:
-            yield (f"{self.left_out} of {self.records} records of cells are left out, {self.left_out_wrong} of them failed or wrong: a page "
-                   f"shows at most {self.max_cells}; give fewer files or fewer lines")
+            yield (
+                f"{self.left_out} of {self.records} records of cells are left out, {self.left_out_wrong} of them failed or wrong: a page "
+                f"shows at most {self.max_cells}; give fewer files or fewer lines"
+            )
 
 
 def _checked(text, location):
@@ -100,8 +113,10 @@ def _checked(text, location):
         raise lines.RecordError(f"{location}: is no record of tandem; {WHAT_TO_GIVE}")
     known, schema = kinds.SCHEMAS[kind], record.get("schema")
     if kind != "cell" and schema != known:
-        raise lines.RecordError(f"{location}: a record of schema {json.dumps(schema)}, but this program reads {known}; convert it with "
-                                "scripts/convert_records")
+        raise lines.RecordError(
+            f"{location}: a record of schema {json.dumps(schema)}, but this program reads {known}; convert it with "
+            "scripts/convert_records"
+        )
     return LISTS[kind], record
 
 
@@ -113,7 +128,9 @@ class _Reader:
         self.left_out = 0
 
     def read(self, path):
-        self.records.files.append({"name": os.path.basename(path), "cells": 0, "profiles": 0, "simulations": 0, "ceilings": 0})
+        self.records.files.append(
+            {"name": os.path.basename(path), "cells": 0, "profiles": 0, "simulations": 0, "ceilings": 0}
+        )
         number, before = 0, len(self.records.notes)
         for number, (kind, record) in lines.numbered(path, self.records.notes.append, _checked):
             try:
@@ -121,7 +138,9 @@ class _Reader:
             except lines.RecordError:
                 raise
             except lines.FIELD_ERRORS:
-                raise lines.RecordError(f"{path}:{number}: a record that lacks fields of its schema; {WHAT_TO_GIVE}") from None
+                raise lines.RecordError(
+                    f"{path}:{number}: a record that lacks fields of its schema; {WHAT_TO_GIVE}"
+                ) from None
         if number == 0 and len(self.records.notes) > before:
             raise lines.RecordError(f"{path}: its only line has no end; name a file of records")
 
@@ -135,7 +154,9 @@ class _Reader:
         elif kind == "simulations":
             self.simulations.add(record, path)
         else:
-            self._add_other(kind, shown_profile(record, path) if kind == "profiles" else shown_ceilings(record))
+            self._add_other(
+                kind, shown_profile(record, path) if kind == "profiles" else shown_ceilings(record)
+            )
 
     def _add_other(self, kind, shown):
         other_records = getattr(self.records, kind)
@@ -151,14 +172,17 @@ class _Reader:
         records.simulations = self.simulations.shown()
         records.notes += cells.notes()
         if self.left_out:
-            records.notes.append(f"{self.left_out} profiles or records of ceilings are left out: a page shows at most {MAX_OTHER_RECORDS} of each")
+            records.notes.append(
+                f"{self.left_out} profiles or records of ceilings are left out: a page shows at most {MAX_OTHER_RECORDS} of each"
+            )
         if self.simulations.left_out:
             records.notes.append(f"the last {self.simulations.left_out} simulations are left out")
         return records
 
 
 def read_records(files, max_cells=MAX_CELLS):
-    """Records of files with any kinds of records. Raises RecordError for files that cannot be read and for other schemas."""
+    """Records of files with any kinds of records. Raises RecordError for files that cannot be read and for
+    other schemas."""
     reader = _Reader(max_cells)
     for file in files:
         reader.read(file)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Gets the geometry of a scene by the program's export."""
+
 import dataclasses
 import json
 import os
@@ -25,7 +26,9 @@ class ExportEnded(Exception):
 
 @dataclasses.dataclass
 class ShownScene:
-    """json: the output of 'tandem export --geometry' (scenes/export/README.md). name, key: those of the scene. frames: number of frames."""
+    """json: the output of 'tandem export --geometry' (scenes/export/README.md). name, key: those of the
+    scene. frames: number of frames."""
+
     json: str
     name: str
     key: str
@@ -55,8 +58,11 @@ class _SignalForwarder:
             self.process.terminate()
 
     def run(self, words, page):
-        """Runs a program, with the page's file in its environment. Returns its exit code, or 128 plus its signal. Discards its standard output."""
-        self.process = subprocess.Popen(words, stdout=subprocess.DEVNULL, env=os.environ | ({"TANDEM_PAGE": page} if page else {}))
+        """Runs a program, with the page's file in its environment. Returns its exit code, or 128 plus its
+        signal. Discards its standard output."""
+        self.process = subprocess.Popen(
+            words, stdout=subprocess.DEVNULL, env=os.environ | ({"TANDEM_PAGE": page} if page else {})
+        )
         if self.signalled:
             self.process.terminate()
         code = self.process.wait()
@@ -70,7 +76,11 @@ def words_of(scene, options):
         values = getattr(options, name, None)
         for value in values if isinstance(values, list) else [values]:
             words += [] if value is None else [f"--{name}={value}"]
-    return [*words, *(f"--{name.replace('_', '-')}" for name in FLAGS if getattr(options, name, False)), *(["--", scene] if scene else [])]
+    return [
+        *words,
+        *(f"--{name.replace('_', '-')}" for name in FLAGS if getattr(options, name, False)),
+        *(["--", scene] if scene else []),
+    ]
 
 
 def _exported(forwarder, program, words, path, page):
@@ -83,9 +93,9 @@ def _exported(forwarder, program, words, path, page):
 
 
 def shown_scene(program, words, page=None):
-    """ShownScene of an export with the arguments `words`. `page`: the file of the page, which the program refuses if it is an input. Raises
-    ExportEnded, BadUse and OutputError."""
-    with _SignalForwarder() as forwarder: # for as long as the folder exists: a signal never leaves it behind
+    """ShownScene of an export with the arguments `words`. `page`: the file of the page, which the program
+    refuses if it is an input. Raises ExportEnded, BadUse and OutputError."""
+    with _SignalForwarder() as forwarder:  # for as long as the folder exists: a signal never leaves it behind
         with temporary_folder() as folder:
             text = _exported(forwarder, program, words, pathlib.Path(folder) / "scene.json", page)
         if forwarder.signalled:

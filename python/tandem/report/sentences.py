@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Sentences on groups: the fastest cell, its lead and significance, and cells that failed or were wrong."""
+
 import dataclasses
 import statistics
 
@@ -31,8 +32,8 @@ def _fastest(group, cells):
 
 
 def _stage_sentence(group, cells):
-    """Which stage makes the difference between the fastest cell and the first that takes longer with its whole interval; empty without such
-    a cell or without stages."""
+    """Which stage makes the difference between the fastest cell and the first that takes longer with its
+    whole interval; empty without such a cell or without stages."""
     slower = next((one for one in group.ranked[1:] if one.is_told_apart and one.ratio.low > 1), None)
     if slower is None:
         return ""
@@ -44,8 +45,10 @@ def _stage_sentence(group, cells):
     if more[stage] <= 0:
         return ""
     part = "Most" if 0 < whole < 2 * more[stage] else "The largest part"
-    return (f" {part} of the difference from {_label(group, slower.cell)} is in stage {stage}: {digits(fast[stage]) if stage in fast else 0} ms a frame instead of "
-            f"{digits(slow.get(stage, 0))}.")
+    return (
+        f" {part} of the difference from {_label(group, slower.cell)} is in stage {stage}: {digits(fast[stage]) if stage in fast else 0} ms a frame instead of "
+        f"{digits(slow.get(stage, 0))}."
+    )
 
 
 def _not_ranked(group, cells):
@@ -57,7 +60,9 @@ def _not_ranked(group, cells):
             continue
         failed = cell.status == "failed"
         why = one_line(cell.failure, 200) if failed else "its answer is not the reference's"
-        sentences += f" {_label(group, number)} {'failed' if failed else 'was wrong'}, and is not ranked: {why}."
+        sentences += (
+            f" {_label(group, number)} {'failed' if failed else 'was wrong'}, and is not ranked: {why}."
+        )
         if len(sentences) > MAX_LETTERS:
             return f"{sentences} There are more."
     return sentences
@@ -75,8 +80,9 @@ def group_sentences(group, cells):
 
 @dataclasses.dataclass
 class _Wins:
-    """Numbers of groups in which an algorithm is the fastest, and in which its lead is significant; the range of ratios of the best other
-    algorithm to it."""
+    """Numbers of groups in which an algorithm is the fastest, and in which its lead is significant; the range
+    of ratios of the best other algorithm to it."""
+
     all: int = 0
     significant: int = 0
     low: float = 0
@@ -91,8 +97,10 @@ class _Wins:
 
 def _wins(groups, cells):
     """Pairs of an algorithm and its _Wins, the most wins first."""
+
     def algorithm(ranked):
         return cells[ranked.cell].recorded.names["algorithm"]
+
     wins = {}
     for group in groups:
         if not group.ranked or group.answers_differ:
@@ -106,11 +114,19 @@ def _wins(groups, cells):
 
 def _won(name, won, contested):
     """A sentence on an algorithm that has the lowest median in `won.all` of `contested` comparisons."""
-    where = "the only comparison" if contested == 1 else f"all {contested} comparisons" if won.all == contested else f"{won.all} of {contested} comparisons"
+    where = (
+        "the only comparison"
+        if contested == 1
+        else f"all {contested} comparisons"
+        if won.all == contested
+        else f"{won.all} of {contested} comparisons"
+    )
     than = digits(won.low) if won.all == 1 else f"{digits(won.low)} to {digits(won.high)}"
     if won.significant == won.all:
         return f"{name} is the fastest in {where}; the best other algorithm takes {than} times as long."
-    apart = f"told apart from it in {won.significant} of these" if won.significant else "not told apart from it"
+    apart = (
+        f"told apart from it in {won.significant} of these" if won.significant else "not told apart from it"
+    )
     return f"{name} has the lowest median in {where}; the best other algorithm takes {than} times as long, and is {apart}."
 
 
@@ -125,7 +141,9 @@ def summary_sentences(groups, cells):
     sentences = _wins_sentences(wins) if wins else []
     failed, wrong = (sum(cell.recorded.status == status for cell in cells) for status in ("failed", "wrong"))
     if failed + wrong > 0:
-        sentences.append(f"{failed} failed and {wrong} gave a wrong answer: they are shown as such and never ranked.")
+        sentences.append(
+            f"{failed} failed and {wrong} gave a wrong answer: they are shown as such and never ranked."
+        )
     older = sum(cell.is_older for cell in cells)
     if older:
         sentences.append(f"{older} were recorded again later: the last record that is ok counts.")

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Sweeps: cells that differ only in one numeric setting, as lines of a chart, with the verdict on their times."""
+"""Sweeps: cells that differ only in one numeric setting, as lines of a chart, with the verdict on their
+times."""
+
 import dataclasses
 import math
 
@@ -15,7 +17,9 @@ MIN_POINTS = 3
 
 @dataclasses.dataclass
 class _Line:
-    """algorithm, preset, rest: what all its cells share; rest: settings without the swept one. points: number of a cell by value."""
+    """algorithm, preset, rest: what all its cells share; rest: settings without the swept one. points: number
+    of a cell by value."""
+
     algorithm: str
     preset: str
     rest: dict
@@ -37,7 +41,11 @@ def _swept(cells, numbers):
     for number in numbers:
         for name, value in cells[number].recorded.settings.items():
             values.setdefault(name, set()).add(value)
-    return [name for name, found in values.items() if len(found) >= MIN_POINTS and all(_value(value) is not None for value in found)]
+    return [
+        name
+        for name, found in values.items()
+        if len(found) >= MIN_POINTS and all(_value(value) is not None for value in found)
+    ]
 
 
 def _is_of_scene(setting, cell):
@@ -47,21 +55,42 @@ def _is_of_scene(setting, cell):
 def _of(setting, cell):
     """What a chart is of: cells of one scene with equal pairs, as far as the setting does not change them."""
     names, settings = cell.recorded.names, cell.recorded.settings
-    bounds = [] if setting in BOUNDS else [f"{name} = {settings[name]}" for name, usual in BOUNDS.items() if settings.get(name, usual) != usual]
+    bounds = (
+        []
+        if setting in BOUNDS
+        else [
+            f"{name} = {settings[name]}"
+            for name, usual in BOUNDS.items()
+            if settings.get(name, usual) != usual
+        ]
+    )
     scene = cell.scene_name if _is_of_scene(setting, cell) else cell.scene
     return ", ".join([scene, names["frames"], *bounds, f"on {names['devices']} ({names['model']})"])
 
 
 def _lines(setting, cells, numbers):
-    """{what a chart is of: its lines of at least MIN_POINTS points}. Parameters of scenes are settings here, too."""
+    """{what a chart is of: its lines of at least MIN_POINTS points}. Parameters of scenes are settings here,
+    too."""
     lines = {}
     for number in numbers:
         recorded = cells[number].recorded
         if setting not in recorded.settings:
             continue
-        names, rest = recorded.names, {name: value for name, value in recorded.settings.items() if name != setting}
-        key = _of(setting, cells[number]), names["algorithm"], names["preset"], names["driver"], names["handling"], *sorted(rest.items())
-        lines.setdefault(key, _Line(names["algorithm"], names["preset"], rest)).points[_value(recorded.settings[setting])] = number
+        names, rest = (
+            recorded.names,
+            {name: value for name, value in recorded.settings.items() if name != setting},
+        )
+        key = (
+            _of(setting, cells[number]),
+            names["algorithm"],
+            names["preset"],
+            names["driver"],
+            names["handling"],
+            *sorted(rest.items()),
+        )
+        lines.setdefault(key, _Line(names["algorithm"], names["preset"], rest)).points[
+            _value(recorded.settings[setting])
+        ] = number
     charts = {}
     for (of, *_), line in lines.items():
         if len(line.points) >= MIN_POINTS:
@@ -74,35 +103,66 @@ def _line_names(lines):
     names = []
     for line in lines:
         alike = [other for other in lines if other.algorithm == line.algorithm]
-        differing = [f"{name}={value}" for name, value in sorted(line.rest.items()) if any(other.rest.get(name) != value for other in alike)]
+        differing = [
+            f"{name}={value}"
+            for name, value in sorted(line.rest.items())
+            if any(other.rest.get(name) != value for other in alike)
+        ]
         preset = [line.preset] if any(other.preset != line.preset for other in lines) else []
         names.append(" ".join([line.algorithm, *preset, *differing]))
     return names
 
 
 def _verdict(setting, points, cells, recorded):
-    """The Verdict of [name, value, number of a cell] rows. Settings of BOUNDS change the pairs: other answers are expected then."""
+    """The Verdict of [name, value, number of a cell] rows. Settings of BOUNDS change the pairs: other answers
+    are expected then."""
     made = [timed(cells[number].recorded) for _, _, number in points]
-    return verdict_of([dataclasses.replace(one, answer=None) for one in made] if setting in BOUNDS else made, recorded)
+    return verdict_of(
+        [dataclasses.replace(one, answer=None) for one in made] if setting in BOUNDS else made, recorded
+    )
 
 
 def _sweep(setting, of, lines, cells, recorded):
     shown = lines[:MAX_LINES]
     names = _line_names(shown)
-    points = [(name, value, line.points[value]) for name, line in zip(names, shown) for value in sorted(line.points)]
+    points = [
+        (name, value, line.points[value]) for name, line in zip(names, shown) for value in sorted(line.points)
+    ]
     verdict = _verdict(setting, points, cells, recorded)
-    named = [Named(one, f"{setting} = {points[one.cell][1]:.10g}{f' of {points[one.cell][0]}' if len(shown) > 1 else ''}", milliseconds(cells[points[one.cell][2]]))
-             for one in verdict.cells]
+    named = [
+        Named(
+            one,
+            f"{setting} = {points[one.cell][1]:.10g}{f' of {points[one.cell][0]}' if len(shown) > 1 else ''}",
+            milliseconds(cells[points[one.cell][2]]),
+        )
+        for one in verdict.cells
+    ]
     if _is_of_scene(setting, cells[points[0][2]]):
         heading, words = f"Times over {setting}: each value is a scene of its own", ""
     else:
-        heading, words = title(named, verdict.answers_differ), "" if verdict.answers_differ else lead_sentence(named, " cells")
-    return {"setting": setting, "of": of, "all": len(lines), "title": heading, "words": words,
-            "lines": [{"name": name, "points": [[value, line.points[value]] for value in sorted(line.points)]} for name, line in zip(names, shown)]}
+        heading, words = (
+            title(named, verdict.answers_differ),
+            "" if verdict.answers_differ else lead_sentence(named, " cells"),
+        )
+    return {
+        "setting": setting,
+        "of": of,
+        "all": len(lines),
+        "title": heading,
+        "words": words,
+        "lines": [
+            {"name": name, "points": [[value, line.points[value]] for value in sorted(line.points)]}
+            for name, line in zip(names, shown)
+        ],
+    }
 
 
 def sweeps_of(cells, recorded=None):
     """Sweeps of ShownCells for the page, by setting. `recorded`: the RecordedVerdicts of their files."""
     numbers = [number for number, cell in enumerate(cells) if is_rankable(cell)]
-    charts = ((setting, of, lines) for setting in _swept(cells, numbers) for of, lines in _lines(setting, cells, numbers).items())
+    charts = (
+        (setting, of, lines)
+        for setting in _swept(cells, numbers)
+        for of, lines in _lines(setting, cells, numbers).items()
+    )
     return [_sweep(*chart, cells, recorded) for chart, _ in zip(charts, range(MAX_SWEEPS))]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Tables of cells: stages for each scene, and ratios of the time of gProximity to that of chunked."""
+
 from .. import cell_rows
 from .naming import Named, labels
 from .wording import notes, number, table, with_interval
@@ -8,24 +9,46 @@ DEVICE = ("transform", "refit", "seed", "traverse", "balance", "contact", "sort"
 HOST = ("preprocess", "postprocess", "exchange")
 STAGES = (*DEVICE[:2], "broad", *DEVICE[2:7], *HOST, *DEVICE[7:])
 KERNELS = DEVICE[:7]
-# Cells with different bounds have different candidate pairs and separate tables. The title has the settings that are not at these defaults.
-BOUNDS = {"k": None, "axes": "standard", "precision": "float", "rounding": "safe", "placement": "rounded", "origin": "world"}
-# Kernels that the paper's release has too. Our refit has a launch for strips and one for tops; our balance has one that plans and one that
-# moves. In the release, the host or these kernels do the work of seeds, body pairs and decisions.
-RELEASE_KERNELS = ("transform_vertices", "refit_tops", "traverse", "traverse_in_groups", "traverse_queues", "plan_balance", "generate_contacts")
+# Cells with different bounds have different candidate pairs and separate tables. The title has the settings
+# that are not at these defaults.
+BOUNDS = {
+    "k": None,
+    "axes": "standard",
+    "precision": "float",
+    "rounding": "safe",
+    "placement": "rounded",
+    "origin": "world",
+}
+# Kernels that the paper's release has too. Our refit has a launch for strips and one for tops; our balance
+# has one that plans and one that moves. In the release, the host or these kernels do the work of seeds, body
+# pairs and decisions.
+RELEASE_KERNELS = (
+    "transform_vertices",
+    "refit_tops",
+    "traverse",
+    "traverse_in_groups",
+    "traverse_queues",
+    "plan_balance",
+    "generate_contacts",
+)
 MAX_RATIOS = 200  # per table; with more, each cell is compared only with the fastest chunked cell
 
 
 class Cell(Named):
-    """The values of a record in tables: milliseconds per frame by stage, launches and waits per frame, the total, notes. Cells of equal `rank`
-    are comparable, as in the table of tandem run: correct cells with pairs, on one device with one output. None: not comparable."""
+    """The values of a record in tables: milliseconds per frame by stage, launches and waits per frame, the
+    total, notes. Cells of equal `rank` are comparable, as in the table of tandem run: correct cells with
+    pairs, on one device with one output. None: not comparable."""
 
     def __init__(self, record, devices):
         super().__init__(record, devices)
         frames = cell_rows.frames_of(record)
         self._read_stages(record["stages"], frames)
         times = record.get("kernel_times") if self.family[0] in ("chunked", "gproximity") else None
-        self.release_launches = sum(times[kernel]["launches"] for kernel in RELEASE_KERNELS if kernel in times) / frames if times else None
+        self.release_launches = (
+            sum(times[kernel]["launches"] for kernel in RELEASE_KERNELS if kernel in times) / frames
+            if times
+            else None
+        )
         total = record["total_ns"] or {}
         self.total = total.get("median", 0) / frames / 1e6
         self.total_text = with_interval(total, 1e-6 / frames, len(set(total.get("rounds", []))))
@@ -33,8 +56,17 @@ class Cell(Named):
         self.pairs = None if pairs is None else sum(pairs) / frames
         self.notes = notes(record)
         own = dict(self.settings)
-        self.rank = self.once((self.devices, own.get("output"))) if record["status"] == "ok" and self.pairs and self.total else None
-        self.heading = self.once(self.heading + "".join(f", {name} = {own[name]}" for name, usual in BOUNDS.items() if own.get(name, usual) != usual))
+        self.rank = (
+            self.once((self.devices, own.get("output")))
+            if record["status"] == "ok" and self.pairs and self.total
+            else None
+        )
+        self.heading = self.once(
+            self.heading
+            + "".join(
+                f", {name} = {own[name]}" for name, usual in BOUNDS.items() if own.get(name, usual) != usual
+            )
+        )
 
     def _read_stages(self, stages, frames):
         def mean(stage, what):  # over the frames of a replay; the median over the replays that time it
@@ -42,7 +74,9 @@ class Cell(Named):
             return (column.get("median", 0) if isinstance(column, dict) else column) / frames
 
         by_host = (*HOST, "broad") if not mean("broad", "launches") else HOST
-        self.stage = {s: mean(s, "host_ns" if s in by_host else "device_ns") / 1e6 for s in STAGES if s in stages}
+        self.stage = {
+            s: mean(s, "host_ns" if s in by_host else "device_ns") / 1e6 for s in STAGES if s in stages
+        }
         self.launches, self.waits = (sum(mean(s, what) for s in stages) for what in ("launches", "waits"))
 
     def kernels(self):
@@ -56,19 +90,48 @@ def _stage_table(rows, named):
         if r.rank:
             best[r.rank] = min(r.total, best.get(r.rank, r.total))
             ranked[r.rank] = ranked.get(r.rank, 0) + 1
-    total = lambda r: f"**{r.total_text}**" if r.rank and ranked[r.rank] > 1 and r.total == best[r.rank] else r.total_text or "-"
+    total = lambda r: (
+        f"**{r.total_text}**"
+        if r.rank and ranked[r.rank] > 1 and r.total == best[r.rank]
+        else r.total_text or "-"
+    )
     stages = [s for s in STAGES if any(r.stage.get(s) for r in rows)]
     release_text = lambda r: "-" if r.release_launches is None else f"{r.release_launches:.0f}"
     counted = [("as theirs", release_text)] if any(r.release_launches is not None for r in rows) else []
-    return table(["method", "device", *stages, "launches", *(name for name, _ in counted), "waits", "total ms", "notes"],
-                 [[*name, *(number(r.stage.get(s)) for s in stages), f"{r.launches:.0f}", *(text(r) for _, text in counted), f"{r.waits:.0f}",
-                   total(r), r.notes] for r, name in zip(rows, named)])
+    return table(
+        [
+            "method",
+            "device",
+            *stages,
+            "launches",
+            *(name for name, _ in counted),
+            "waits",
+            "total ms",
+            "notes",
+        ],
+        [
+            [
+                *name,
+                *(number(r.stage.get(s)) for s in stages),
+                f"{r.launches:.0f}",
+                *(text(r) for _, text in counted),
+                f"{r.waits:.0f}",
+                total(r),
+                r.notes,
+            ]
+            for r, name in zip(rows, named)
+        ],
+    )
 
 
 def _opponents(rows, named):
-    """Cells of gProximity with their names, cells of chunked with their names by rank, and whether the latter are complete."""
+    """Cells of gProximity with their names, cells of chunked with their names by rank, and whether the latter
+    are complete."""
     cells = [(r, name) for r, (name, _) in zip(rows, named) if r.rank]
-    ours, theirs = ([(r, name) for r, name in cells if r.family[0] == algorithm] for algorithm in ("chunked", "gproximity"))
+    ours, theirs = (
+        [(r, name) for r, name in cells if r.family[0] == algorithm]
+        for algorithm in ("chunked", "gproximity")
+    )
     by_rank = {}
     for own in ours:
         by_rank.setdefault(own[0].rank, []).append(own)
@@ -81,10 +144,18 @@ def _opponents(rows, named):
 def _ratios(above, below, counted):
     """Texts of ratios of times and launches of two cells."""
     part = lambda a, b, digits: f"{a / b:.{digits}f}" if b else "-"
-    texts = [part(above.total, below.total, 2), part(above.kernels(), below.kernels(), 2),
-             part(above.stage.get("write", 0), below.stage.get("write", 0), 1), part(above.launches, below.launches, 1)]
+    texts = [
+        part(above.total, below.total, 2),
+        part(above.kernels(), below.kernels(), 2),
+        part(above.stage.get("write", 0), below.stage.get("write", 0), 1),
+        part(above.launches, below.launches, 1),
+    ]
     if counted:
-        texts.append("-" if None in (above.release_launches, below.release_launches) else part(above.release_launches, below.release_launches, 1))
+        texts.append(
+            "-"
+            if None in (above.release_launches, below.release_launches)
+            else part(above.release_launches, below.release_launches, 1)
+        )
     return texts
 
 
@@ -92,12 +163,34 @@ def _ratio_table(rows, named):
     theirs, by_rank, all_shown = _opponents(rows, named)
     device_of = {id(r): device for r, (_, device) in zip(rows, named)}
     counted = any(r.release_launches is not None for r in rows)
-    lines = [[f"{name.removeprefix('gproximity ')} / {base.removeprefix('chunked ')}", device_of[id(g)], *_ratios(g, c, counted)]
-             for g, name in theirs for c, base in by_rank.get(g.rank, ())]
+    lines = [
+        [
+            f"{name.removeprefix('gproximity ')} / {base.removeprefix('chunked ')}",
+            device_of[id(g)],
+            *_ratios(g, c, counted),
+        ]
+        for g, name in theirs
+        for c, base in by_rank.get(g.rank, ())
+    ]
     if not lines:
         return ""
-    head = "\n" if all_shown else f"\nMore than {MAX_RATIOS} ratios: only those to the fastest chunked cell are shown.\n\n"
-    return head + table(["gProximity / chunked", "device", "total", "kernels", "write", "launches", *(["as theirs"] if counted else [])], lines)
+    head = (
+        "\n"
+        if all_shown
+        else f"\nMore than {MAX_RATIOS} ratios: only those to the fastest chunked cell are shown.\n\n"
+    )
+    return head + table(
+        [
+            "gProximity / chunked",
+            "device",
+            "total",
+            "kernels",
+            "write",
+            "launches",
+            *(["as theirs"] if counted else []),
+        ],
+        lines,
+    )
 
 
 def text(rows, devices):
@@ -109,5 +202,9 @@ def text(rows, devices):
         pairs = sorted({row.pairs for row in own if row.pairs is not None})
         count = " to ".join(f"{value:,.0f}" for value in ([pairs[0], pairs[-1]] if len(pairs) > 1 else pairs))
         named = labels(own, devices, BOUNDS)
-        parts += [f"\n### {heading}\n\n{count or 'Unknown'} candidate pairs a frame.\n\n", _stage_table(own, named), _ratio_table(own, named)]
+        parts += [
+            f"\n### {heading}\n\n{count or 'Unknown'} candidate pairs a frame.\n\n",
+            _stage_table(own, named),
+            _ratio_table(own, named),
+        ]
     return "".join(parts)

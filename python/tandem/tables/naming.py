@@ -1,17 +1,22 @@
 # SPDX-License-Identifier: MIT
 """Names of cells and devices in tables, made only of what differs among them."""
+
 from ..varying import varying
 
 
 class Devices:
-    """Names of devices. If an id stands for several models or cards in different files, the name has the model, or part of the address."""
+    """Names of devices. If an id stands for several models or cards in different files, the name has the
+    model, or part of the address."""
 
     def __init__(self):
         self.cards = {}
 
     def add(self, devices):
         """Adds the devices of a record. Returns the argument of text() for them."""
-        own = tuple((d["id"], d["name"] + (" (PoCL)" if "PoCL" in d["driver"] else ""), d["hardware"] or "") for d in devices)
+        own = tuple(
+            (d["id"], d["name"] + (" (PoCL)" if "PoCL" in d["driver"] else ""), d["hardware"] or "")
+            for d in devices
+        )
         for identity, *card in own:
             self.cards.setdefault(identity, {})[tuple(card)] = None
         return own
@@ -28,7 +33,9 @@ class Devices:
 
 
 class Named:
-    """The values that name a record of an algorithm. Equal values are stored once, because they need most of the memory for long files."""
+    """The values that name a record of an algorithm. Equal values are stored once, because they need most of
+    the memory for long files."""
+
     _unique = {}
 
     @classmethod
@@ -36,7 +43,8 @@ class Named:
         return cls._unique.setdefault(value, value)
 
     def __init__(self, record, devices, more=None):
-        # Settings as they were asked for: a device that changes one, such as to groups of one work-item, does not make another cell.
+        # Settings as they were asked for: a device that changes one, such as to groups of one work-item, does
+        # not make another cell.
         settings = sorted({**record["settings"], **record.get("asked", {}), **(more or {})}.items())
         self.settings = self.once(tuple(map(self.once, settings)))
         self.family = self.once((record["algorithm"], record["preset"]))
@@ -48,11 +56,22 @@ class Named:
 
 
 def labels(rows, devices, known=()):
-    """(text, devices) of each Named. The text has algorithm, preset, and the settings in which cells of both differ, without those in
-    `known`. Commits are added if nothing else differs."""
+    """(text, devices) of each Named. The text has algorithm, preset, and the settings in which cells of both
+    differ, without those in `known`. Commits are added if nothing else differs."""
     differ = varying({(row.family, row.settings) for row in rows})
-    texts = [" ".join([*row.family, *(f"{name}={value}" for name, value in row.settings if name not in known and (row.family, name) in differ)])
-             for row in rows]
+    texts = [
+        " ".join(
+            [
+                *row.family,
+                *(
+                    f"{name}={value}"
+                    for name, value in row.settings
+                    if name not in known and (row.family, name) in differ
+                ),
+            ]
+        )
+        for row in rows
+    ]
     commits, times = {}, {}
     for row, text in zip(rows, texts):
         commits.setdefault((text, row.devices), set()).add(row.commit)

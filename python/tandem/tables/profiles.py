@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Tables of profiles: kernels, one table per profile."""
+
 from .. import cell_rows
 from .naming import Named, labels
 from .wording import notes, number, table, with_interval
@@ -10,7 +11,18 @@ def _percent(value):
 
 
 class Profile(Named):
-    HEADS = ["kernel", "stage", "us a frame", "share", "launches", "times its floor", "bound", "of bytes", "of comparisons", "occupancy"]
+    HEADS = [
+        "kernel",
+        "stage",
+        "us a frame",
+        "share",
+        "launches",
+        "times its floor",
+        "bound",
+        "of bytes",
+        "of comparisons",
+        "occupancy",
+    ]
 
     def __init__(self, record, devices):
         super().__init__(record, devices)
@@ -18,9 +30,21 @@ class Profile(Named):
         self.notes = notes(record)
         rounds = len(set(total.get("rounds", [])))
         self.total_text = with_interval(total, 1e-6 / cell_rows.frames_of(record), rounds)
-        self.kernels = [[k["entry"], k["stage"], with_interval(k["device_ns"], 1e-3, rounds), _percent(k["share"]), number(k["launches"]),
-                         "" if k["over_floor"] is None else number(k["over_floor"]), self._bound(k), _percent(k["of_bytes"]),
-                         _percent(k["of_operations"]), _percent(k["occupancy"])] for k in record["kernels"]]
+        self.kernels = [
+            [
+                k["entry"],
+                k["stage"],
+                with_interval(k["device_ns"], 1e-3, rounds),
+                _percent(k["share"]),
+                number(k["launches"]),
+                "" if k["over_floor"] is None else number(k["over_floor"]),
+                self._bound(k),
+                _percent(k["of_bytes"]),
+                _percent(k["of_operations"]),
+                _percent(k["occupancy"]),
+            ]
+            for k in record["kernels"]
+        ]
 
     @staticmethod
     def _bound(kernel):
@@ -31,7 +55,11 @@ class Profile(Named):
 def text(rows, devices):
     parts = []
     for row, (name, device) in zip(rows, labels(rows, devices)):
-        parts += [f"\n### Kernels of {name} on {device}: {row.heading}\n\n", f"A frame takes {row.total_text or '?'} ms. {row.notes}".rstrip(), "\n\n"]
+        parts += [
+            f"\n### Kernels of {name} on {device}: {row.heading}\n\n",
+            f"A frame takes {row.total_text or '?'} ms. {row.notes}".rstrip(),
+            "\n\n",
+        ]
         if row.kernels:
             parts.append(table(Profile.HEADS, row.kernels))
     return "".join(parts)

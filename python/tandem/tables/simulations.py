@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Tables of simulations: fractions of time by stage of each run, and runs that have not ended."""
+
 import statistics
 
 from .naming import Named, labels
@@ -8,8 +9,24 @@ from .wording import number, table, verdict
 
 class Run(Named):
     """A run of a simulation: the steps that one process recorded."""
-    HEADS = ["scene", "method", "device", "steps", "ms a step", "total s", "warm-up s", "initialization", "broad", "narrow", "contact reduction",
-             "solver and its rows", "motion", "contacts found / kept", "notes"]
+
+    HEADS = [
+        "scene",
+        "method",
+        "device",
+        "steps",
+        "ms a step",
+        "total s",
+        "warm-up s",
+        "initialization",
+        "broad",
+        "narrow",
+        "contact reduction",
+        "solver and its rows",
+        "motion",
+        "contacts found / kept",
+        "notes",
+    ]
 
     def __init__(self, record, devices, steps):
         super().__init__(record, devices, record["dynamics"])
@@ -17,10 +34,20 @@ class Run(Named):
         part = lambda ns: f"{100 * ns / total:.1f} %" if total else "-"
         start = record["initialize_device_ns"]
         warm_up = record.get("warm_up_ns")
-        self.texts = [f"{record['steps']}", number(statistics.median(steps) / 1e6) if steps else "-", f"{total / 1e9:.3g}",
-                      "" if warm_up is None else f"{warm_up / 1e9:.3g}", part(start), part(host["broad"]), part(host["narrow"] - start),
-                      part(host["reduce"]), part(host["assemble"] + host["solve"]), part(host["move"]),
-                      f"{record['contacts_found_median']:.0f} / {record['contacts_kept_median']:.0f}", verdict(record)]
+        self.texts = [
+            f"{record['steps']}",
+            number(statistics.median(steps) / 1e6) if steps else "-",
+            f"{total / 1e9:.3g}",
+            "" if warm_up is None else f"{warm_up / 1e9:.3g}",
+            part(start),
+            part(host["broad"]),
+            part(host["narrow"] - start),
+            part(host["reduce"]),
+            part(host["assemble"] + host["solve"]),
+            part(host["move"]),
+            f"{record['contacts_found_median']:.0f} / {record['contacts_kept_median']:.0f}",
+            verdict(record),
+        ]
 
 
 class Simulations:
@@ -39,7 +66,9 @@ class Simulations:
     def text(self, devices):
         texts = ""
         if self.runs:
-            rows = [[run.heading, *name, *run.texts] for run, name in zip(self.runs, labels(self.runs, devices))]
+            rows = [
+                [run.heading, *name, *run.texts] for run, name in zip(self.runs, labels(self.runs, devices))
+            ]
             texts = "\n### Simulations\n\n" + table(Run.HEADS, rows)
         unfinished = {file: own for (file, _), own in self.steps.items()}
         for file, steps in unfinished.items():

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Texts of numbers and notes in tables."""
+
 from .. import markdown
 
 
@@ -36,10 +37,12 @@ def verdict(record):
 def notes(record):
     """Notes on the numbers of a cell, as one text."""
     sampling, conditions, chosen = record["sampling"], record["conditions"] or {}, record.get("chosen")
-    found = [verdict(record),
-             "not compared" if record["agreement"] is None and record["status"] == "ok" else "",
-             "interrupted" if sampling["interrupted"] else "",
-             "wide interval" if sampling["converged"] is False else "",
-             f"{len(conditions['disturbed'])} rounds disturbed" if conditions.get("disturbed") else "",
-             f"chosen by {chosen['by']} of {chosen['of']}" if chosen else ""]
+    found = [
+        verdict(record),
+        "not compared" if record["agreement"] is None and record["status"] == "ok" else "",
+        "interrupted" if sampling["interrupted"] else "",
+        "wide interval" if sampling["converged"] is False else "",
+        f"{len(conditions['disturbed'])} rounds disturbed" if conditions.get("disturbed") else "",
+        f"chosen by {chosen['by']} of {chosen['of']}" if chosen else "",
+    ]
     return "; ".join(filter(None, found))
