@@ -104,12 +104,6 @@ DEVICE uint filtered(GLOBAL const uint* filters, uint a, GLOBAL const uint* colu
     return kept;
 }
 
-DEVICE uint count_bits(uint bits) {
-    uint count = 0;
-    for (; bits != 0u; bits &= bits - 1u) ++count;
-    return count;
-}
-
 // Writes the pairs of body `a` with the bodies of those columns that `hits` marks, from number `index` on, up
 // to the capacity.
 DEVICE void write_pairs(GLOBAL uint* pairs, uint capacity, uint index, uint a, GLOBAL const uint* columns,
@@ -120,6 +114,21 @@ DEVICE void write_pairs(GLOBAL uint* pairs, uint capacity, uint index, uint a, G
         pairs[2u * (ulong)index] = a < b ? a : b;
         pairs[2u * (ulong)index + 1u] = a < b ? b : a;
     }
+}
+
+// Bodies that a work-group tests with each other: rows of one tile, and columns of another.
+typedef struct {
+    uint row, rows_end;
+    uint column, columns;
+} TilesOfBodies;
+
+DEVICE TilesOfBodies tiles_of_bodies(uint row, uint moving_count, uint column, uint body_count) {
+    TilesOfBodies tiles;
+    tiles.row = row;
+    tiles.rows_end = moving_count - row < BROAD_TILE ? moving_count : row + BROAD_TILE;
+    tiles.column = column;
+    tiles.columns = body_count - column < BROAD_TILE ? body_count - column : BROAD_TILE;
+    return tiles;
 }
 
 // Words shared by a work-group.
@@ -153,41 +162,39 @@ KERNEL void find_body_pairs(GLOBAL const real* volumes, GLOBAL const RealPair* r
         const uint count = shared[CHOSEN];
         uint i = 0;
         do {
-            const uint rows_from = i < count ? chosen[i] / tiles * BROAD_TILE : moving_count;
-            const uint from = i < count ? chosen[i] % tiles * BROAD_TILE : body_count;
-            const uint rest = body_count - from;
-            const uint column_count = rest < BROAD_TILE ? rest : BROAD_TILE;
-            const uint rows_end =
-                moving_count - rows_from < BROAD_TILE ? moving_count : rows_from + BROAD_TILE;
-            uint row = rows_from + LOCAL_ID;
-            uint rows_done = rows_from;
-            NO_UNROLL for (uint c = LOCAL_ID; c < column_count; c += GROUP_SIZE) {
+            const TilesOfBodies own =
+                i < count ? tiles_of_bodies(chosen[i] / tiles * BROAD_TILE, moving_count,
+                                            chosen[i] % tiles * BROAD_TILE, body_count)
+                          : tiles_of_bodies(moving_count, moving_count, body_count, body_count);
+            uint row = own.row + LOCAL_ID;
+            uint rows_done = own.row;
+            NO_UNROLL for (uint c = LOCAL_ID; c < own.columns; c += GROUP_SIZE) {
                 UNROLL for (int axis = 0; axis < DIRECTIONS; ++axis) {
                     columns[c * DIRECTIONS + axis] = is_only_tile
-                                                         ? slab_of(volumes, order, from + c, (uint)axis)
-                                                         : roots[(ulong)(from + c) * DIRECTIONS + axis];
+                                                         ? slab_of(volumes, order, own.column + c, (uint)axis)
+                                                         : roots[(ulong)(own.column + c) * DIRECTIONS + axis];
                 }
             }
             do {
                 if (LOCAL_ID == 0u) shared[FOUND] = 0u;
                 BARRIER;
                 uint hits = 0;
-                if (row < rows_end) {
-                    hits = overlapping_columns(roots, is_only_tile, row, columns, from, column_count)
-                           | own_column(volumes, bodies, order[row], row, from);
-                    if (FILTERED) hits = filtered(filters, order[row], order + from, hits);
+                if (row < own.rows_end) {
+                    hits = overlapping_columns(roots, is_only_tile, row, columns, own.column, own.columns)
+                           | own_column(volumes, bodies, order[row], row, own.column);
+                    if (FILTERED) hits = filtered(filters, order[row], order + own.column, hits);
                 }
-                const uint offset = hits != 0u ? LOCAL_ATOMIC_ADD(shared + FOUND, count_bits(hits)) : 0u;
+                const uint offset = hits != 0u ? LOCAL_ATOMIC_ADD(shared + FOUND, COUNT_ONES(hits)) : 0u;
                 BARRIER;
                 if (LOCAL_ID == 0u && shared[FOUND] != 0u)
                     shared[FIRST_INDEX] = counter_add(status + STATUS_BODY_PAIRS, shared[FOUND]);
                 BARRIER;
                 if (hits != 0u)
-                    write_pairs(pairs, capacity, shared[FIRST_INDEX] + offset, order[row], order + from,
+                    write_pairs(pairs, capacity, shared[FIRST_INDEX] + offset, order[row], order + own.column,
                                 hits);
                 row += GROUP_SIZE;
                 rows_done += GROUP_SIZE;
-            } while (rows_done < rows_end);
+            } while (rows_done < own.rows_end);
             ++i;
         } while (i < count);
         start += GROUP_COUNT * GROUP_SIZE;
