@@ -18,6 +18,12 @@ void add_kernel_sources(std::span<const KernelSource> sources);
 /// unknown.
 const KernelSource& kernel_source(std::string_view name);
 
+/// Compiles the kernel of which `Arguments` are the arguments into `kernel`. Throws as Device::compile().
+template<class Arguments>
+void compile_kernel(Device& device, KernelOf<Arguments>& kernel, const Defines& defines) {
+    kernel = KernelOf<Arguments>(device.compile(kernel_source(Arguments::source), Arguments::entry, defines));
+}
+
 /// Digest of the texts of all kernel files. Measurements with another digest do not apply to these kernels.
 std::uint64_t kernel_sources_digest();
 

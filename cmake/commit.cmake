@@ -17,7 +17,7 @@ endif()
 # needs no git.
 set(sources)
 file(GLOB_RECURSE files RELATIVE ${SOURCE} ${SOURCE}/base/*.cpp ${SOURCE}/base/*.h ${SOURCE}/geometry/*.cpp ${SOURCE}/geometry/*.h ${SOURCE}/backends/*.cpp ${SOURCE}/backends/*.h ${SOURCE}/algorithms/*.c* ${SOURCE}/algorithms/*.h
-     ${SOURCE}/scenes/*.cpp ${SOURCE}/scenes/*.h ${SOURCE}/harness/sampling/* ${SOURCE}/harness/verify/* ${SOURCE}/cmake/embed_kernels.py)
+     ${SOURCE}/scenes/*.cpp ${SOURCE}/scenes/*.h ${SOURCE}/harness/sampling/* ${SOURCE}/harness/verify/* ${SOURCE}/cmake/embed_kernels.py ${SOURCE}/cmake/kernel_arguments.py)
 foreach(file ${files})
   file(SHA256 ${SOURCE}/${file} digest)
   string(APPEND sources "${file} ${digest}\n")

@@ -1,14 +1,29 @@
 # SPDX-License-Identifier: MIT
-"""Flattens kernel files with their headers, and writes them as C++ strings and as host C++ for each
-geometry."""
+"""Flattens kernel files with their headers, and writes them as C++ strings, as host C++ for each variant, and
+headers with the arguments of each kernel.
+
+A kernel file says in one line of which defines its host code is compiled once for each value, and whether it
+has loops over lanes, which are compiled for several levels of x86-64:
+
+    // Host variants: AXES K PRECISION SLABS=0|1, in lanes; of higher levels: PRECISION=32 SLABS=0
+
+AXES, K and PRECISION have the values of the build's geometries. Levels above the lowest have only variants with
+the values that follow "of higher levels". All other defines are variables of the host code."""
 
 import argparse
+import dataclasses
+import itertools
 import pathlib
 import re
+import sys
+
+import kernel_arguments
 
 INCLUDE = re.compile(r'^#include "([^"]+)"')
-ENTRY = re.compile(r"^KERNEL void (\w+)\(", re.M)
 DEFAULT = re.compile(r"^#ifndef (\w+)\n#define \1 (\d+)$", re.M)
+VARIANTS = re.compile(r"^// Host variants: (.*?)(, in lanes)?(?:; of higher levels: (.*))?$", re.M)
+OF_GEOMETRY = {"AXES", "K", "PRECISION"}
+LANES = re.compile(r"^(?!#define|//).*\bFOR_LANES\b", re.M)
 
 
 def flatten(root, name, included):
@@ -47,8 +62,10 @@ def table_code(row, names, function, own):
 
 def sources(kernels, own):
     out = ['#include "algorithms/sources.h"', "namespace tandem {", "namespace {"]
-    for index, (name, text) in enumerate(kernels.items()):
-        out.append(f'constexpr KernelSource source_{index}{{"{name}",\nR"KERNEL({text})KERNEL"}};')
+    for index, kernel in enumerate(kernels):
+        out.append(
+            f'constexpr KernelSource source_{index}{{"{kernel.name}",\nR"KERNEL({kernel.text})KERNEL"}};'
+        )
     names = [f"source_{index}" for index in range(len(kernels))]
     out += [
         "} // namespace",
@@ -59,76 +76,99 @@ def sources(kernels, own):
     return "\n".join(out)
 
 
-def named(text, geometry):
-    """Those defines of a geometry that occur in the text."""
-    return [pair for pair in geometry.split(",") if re.search(rf"\b{pair.split('=')[0]}\b", text)]
+@dataclasses.dataclass
+class Kernel:
+    """A kernel file. text: with its headers. geometry: names of defines that the build gives values for;
+    choices: [["SLABS=0"], ["SLABS=1"]], other defines for each variant; on_higher: values that levels above the
+    lowest are limited to."""
+
+    name: str
+    text: str
+    own_text: str
+    geometry: list = dataclasses.field(default_factory=list)
+    choices: list = dataclasses.field(default_factory=list)
+    in_lanes: bool = False
+    on_higher: set = dataclasses.field(default_factory=set)
+
+    def __post_init__(self):
+        """Raises ValueError where the line of variants does not fit the text."""
+        lines = VARIANTS.findall(self.own_text)
+        if len(lines) != 1:
+            raise ValueError(f"{self.name}: {len(lines)} lines '// Host variants: ...' instead of one")
+        names, lanes, on_higher = lines[0]
+        self.geometry = [word for word in names.split() if "=" not in word]
+        lists = [word.split("=") for word in names.split() if "=" in word]
+        self.choices = list(
+            itertools.product(*([f"{name}={value}" for value in values.split("|")] for name, values in lists))
+        )
+        self.in_lanes, self.on_higher = bool(lanes), set(on_higher.split())
+        for name in {*OF_GEOMETRY, *self.geometry, *(name for name, _ in lists)}:
+            is_listed = name in self.geometry or name in (pair[0] for pair in lists)
+            if is_listed != bool(re.search(rf"\b{name}\b", VARIANTS.sub("", self.text))):
+                raise ValueError(f"{self.name}: host variants and text differ in whether they name {name}")
+        if self.in_lanes != bool(LANES.search(self.text)):
+            raise ValueError(f"{self.name}: host variants and text differ in whether they have lanes")
+
+    def variants(self, geometry):
+        """Defines of the variants in a geometry, "AXES=0,K=8,PRECISION=32"."""
+        own = [pair for pair in geometry.split(",") if pair.partition("=")[0] in self.geometry]
+        return [[*own, *choice] for choice in self.choices]
+
+    def is_on_higher(self, defines, higher_k):
+        """Whether levels above the lowest have this variant, of those values of k in `higher_k` or of all."""
+        has = set(defines)
+        return self.on_higher <= has and (not higher_k or has & {f"K={k}" for k in higher_k})
 
 
-def choices(text):
-    """Defines, besides the geometry, for which a text is compiled separately: SLABS determines sizes of
-    arrays."""
-    return [["SLABS=0"], ["SLABS=1"]] if re.search(r"^#if SLABS\b", text, re.M) else [[]]
+def variant_code(kernel, defines, scope, identifier, level):
+    """Code of one variant, in a namespace of its own because types of one name differ between variants, and its
+    rows in the table."""
+    fixed = dict(pair.split("=") for pair in defines)
+    defaults = {
+        key: value
+        for key, value in sorted(DEFAULT.findall(kernel.text))
+        if key not in fixed and key != "GROUP_SIZE"
+    }
+    out = [f"namespace {scope} {{", "#undef TANDEM_PORTABLE_H"]
+    out += [f"#define {key} {value}" for key, value in fixed.items()] + ["#define GROUP_SIZE 1"]
+    if kernel.in_lanes:  # nothing is shared with files that are compiled for other processors
+        out.append("#define LOCAL_ON_STACK")
+    for key, value in defaults.items():
+        out.append(f"static constinit thread_local long runtime_{key} = {value};")
+        out.append(f"#define {key} runtime_{key}")
+    out += [kernel.text, f'#line 1 "{identifier}"', "static const tandem::host::RuntimeDefine runtime[] = {"]
+    out += [
+        f'{{"{key}", [](long to) {{ runtime_{key} = to; }}, {value}}},' for key, value in defaults.items()
+    ]
+    out += ["{nullptr, nullptr, 0}};", "}"]
+    macros = {*re.findall(r"^#\s*define (\w+)", kernel.text, re.M), *fixed, *defaults}
+    out += [f"#undef {macro}" for macro in sorted(macros | {"GROUP_SIZE", "LOCAL_ON_STACK"})]
+    rows = []
+    for entry, _ in kernel_arguments.KERNEL.findall(kernel.text):
+        call = f"tandem::host::Invoke<&{scope}::{entry}>"
+        rows.append(
+            f'{{"{kernel.name}", "{entry}", "{";".join(defines)}", {call}::run, {call}::count, '
+            f"{{{scope}::runtime, {len(defaults)}}}, {level}}},"
+        )
+    return out, rows
 
 
-def has_lanes(text):
-    """Whether a kernel file has loops over lanes, which the compiler vectorises."""
-    return re.search(r"^(?!#define|//).*\bFOR_LANES\b", text, re.M) is not None
-
-
-def is_of_higher_levels(defines, higher_k):
-    """Whether levels above the lowest contain this variant: only those that are measured most. The lowest
-    level has all of them."""
-    k = [pair[2:] for pair in defines if pair.startswith("K=")]
-    return not {"PRECISION=64", "SLABS=1"} & set(defines) and (not higher_k or set(k) <= set(higher_k))
-
-
-def host_variant(kernels, geometry, geometries, identifier, level, is_wanted):
+def host_variant(kernels, geometry, geometries, identifier, level, higher_k):
     """Code of the kernels of one geometry. A kernel that names only some of its defines is in the first
     geometry with these values. `level`: x86-64-v2, -v3 or -v4, for which the file is compiled; 0: any
-    processor. `is_wanted`: whether the level has a variant with these defines."""
+    processor. `higher_k`: None at the lowest level, which has all variants."""
     out, rows = [], []
-    variants = [(name, text, choice) for name, text in kernels.items() for choice in choices(text)]
-    for index, (name, text, choice) in enumerate(variants):
-        own = named(text, geometry)
-        if geometry != next(g for g in geometries if named(text, g) == own):
+    for number, kernel in enumerate(kernels):
+        own = kernel.variants(geometry)
+        if geometry != next(g for g in geometries if kernel.variants(g) == own):
             continue
-        own = own + choice
-        if not is_wanted(own):
-            continue
-        fixed = dict(pair.split("=") for pair in own)
-        defaults = {
-            key: value for key, value in DEFAULT.findall(text) if key not in fixed and key != "GROUP_SIZE"
-        }
-        names = sorted(defaults)
-        # Local memory on the stack, so that nothing is shared with files that are compiled for other
-        # processors.
-        stack = ["#define LOCAL_ON_STACK"] if has_lanes(text) else []
-        # A namespace for each variant: types of one name differ between variants.
-        scope = f"{identifier}_kernel_{index}"
-        out += [f"namespace {scope} {{", "#undef TANDEM_PORTABLE_H"]
-        out += [f"#define {key} {value}" for key, value in fixed.items()] + ["#define GROUP_SIZE 1"] + stack
-        for key in names:
-            out += [
-                f"static constinit thread_local long runtime_{key} = {defaults[key]};",
-                f"#define {key} runtime_{key}",
-            ]
-        out += [text, f'#line 1 "{identifier}"', "static const tandem::host::RuntimeDefine runtime[] = {"]
-        out += [
-            f'{{"{key}", [](long value) {{ runtime_{key} = value; }}, {defaults[key]}}},' for key in names
-        ] + ["{nullptr, nullptr, 0}};", "}"]
-        macros = (
-            set(re.findall(r"^#\s*define (\w+)", text, re.M))
-            | set(fixed)
-            | set(names)
-            | {"GROUP_SIZE", "LOCAL_ON_STACK"}
-        )
-        out += [f"#undef {macro}" for macro in sorted(macros)]
-        for entry in ENTRY.findall(text):
-            call = f"tandem::host::Invoke<&{scope}::{entry}>"
-            rows.append(
-                f'{{"{name}", "{entry}", "{";".join(own)}", {call}::run, {call}::count, '
-                f"{{{scope}::runtime, {len(names)}}}, {level}}},"
-            )
+        for choice, defines in enumerate(own):
+            if higher_k is not None and not kernel.is_on_higher(defines, higher_k):
+                continue
+            scope = f"{identifier}_kernel_{number}_{choice}"
+            code, own_rows = variant_code(kernel, defines, scope, identifier, level)
+            out += code
+            rows += own_rows
     if not rows:
         return ""
     out += [
@@ -155,68 +195,62 @@ def host_table(identifiers, own):
     return "\n".join(out)
 
 
-def main():
+def write_level(arguments, kernels, level):
+    """Writes the host code of a level, several geometries to a file; returns the names of its tables."""
+    these = [kernel for kernel in kernels if not arguments.levels or kernel.in_lanes == (level != 0)]
+    own = re.sub(r"\W", "_", arguments.own)
+    has_all = level in (0, min(arguments.levels, default=0))
+    found, parts = [], []
+    for geometry in arguments.geometries:
+        name = "_".join(
+            filter(None, ["host", own, f"v{level}" if level else "", re.sub(r"\W", "_", geometry)])
+        )
+        higher_k = None if has_all else arguments.higher_k
+        parts.append(host_variant(these, geometry, arguments.geometries, name, level, higher_k))
+        if parts[-1]:
+            found.append(name)
+    for number, first in enumerate(range(0, len(parts), arguments.each)):
+        code = parts[first : first + arguments.each]
+        text = "\n".join(['#include "backends/host/dialect.h"', *code] if any(code) else [])
+        write(arguments.out / (f"host_v{level}_{number}.cpp" if level else f"host_{number}.cpp"), text)
+    return found
+
+
+def parsed():
     parser = argparse.ArgumentParser()
     parser.add_argument("--root", type=pathlib.Path)
     parser.add_argument("--out", type=pathlib.Path)
     parser.add_argument("--geometries", nargs="+")
     parser.add_argument("--each", type=int, default=1, help="geometries per file")
     parser.add_argument("--kernels", nargs="+")
-    parser.add_argument(
-        "--levels",
-        nargs="*",
-        type=int,
-        default=[],
-        help="levels of x86-64 for which files with lanes are compiled",
-    )
-    parser.add_argument(
-        "--higher-k", nargs="*", default=[], help="values of K at levels above the lowest; left out: all"
-    )
-    parser.add_argument(
-        "--own", default="", help="the target that contains the kernels; left out for the library"
-    )
+    parser.add_argument("--levels", nargs="*", type=int, default=[], help="of x86-64, for files with lanes")
+    parser.add_argument("--higher-k", nargs="*", default=[], help="at levels above the lowest; left out: all")
+    parser.add_argument("--own", default="", help="target that contains the kernels; left out: the library")
     parser.add_argument("--flatten", help="only print this kernel file with its headers")
-    arguments = parser.parse_args()
+    return parser.parse_args()
+
+
+def main():
+    arguments = parsed()
+    root = arguments.root
     if arguments.flatten:
-        print("\n".join(flatten(arguments.root, arguments.flatten, set())))
+        print("\n".join(flatten(root, arguments.flatten, set())))
         return
     arguments.out.mkdir(parents=True, exist_ok=True)
-    kernels = {name: "\n".join(flatten(arguments.root, name, set())) + "\n" for name in arguments.kernels}
+    try:
+        kernels = [
+            Kernel(name, "\n".join(flatten(root, name, set())) + "\n", (root / name).read_text())
+            for name in arguments.kernels
+        ]
+        for kernel in kernels:
+            path = arguments.out / f"{kernel.name}.h"
+            path.parent.mkdir(parents=True, exist_ok=True)
+            write(path, kernel_arguments.header(kernel.name, kernel.text))
+    except ValueError as error:
+        sys.exit(str(error))
     write(arguments.out / "sources.cpp", sources(kernels, arguments.own))
-    identifiers = []
-    for level in [0, *arguments.levels]:
-        these = {
-            name: text
-            for name, text in kernels.items()
-            if not arguments.levels or has_lanes(text) == (level != 0)
-        }
-        own = re.sub(r"\W", "_", arguments.own)
-        names = [
-            "_".join(filter(None, ["host", own, f"v{level}" if level else "", re.sub(r"\W", "_", geometry)]))
-            for geometry in arguments.geometries
-        ]
-        has_all = level in (0, min(arguments.levels, default=0))
-        variants = [
-            host_variant(
-                these,
-                geometry,
-                arguments.geometries,
-                name,
-                level,
-                lambda own, has_all=has_all: has_all or is_of_higher_levels(own, arguments.higher_k),
-            )
-            for geometry, name in zip(arguments.geometries, names)
-        ]
-        for part, first in enumerate(range(0, len(variants), arguments.each)):
-            these_variants = variants[first : first + arguments.each]
-            write(
-                arguments.out / (f"host_v{level}_{part}.cpp" if level else f"host_{part}.cpp"),
-                "\n".join(
-                    ['#include "backends/host/dialect.h"', *these_variants] if any(these_variants) else []
-                ),
-            )
-        identifiers += [name for name, variant in zip(names, variants) if variant]
-    write(arguments.out / "host_table.cpp", host_table(identifiers, arguments.own))
+    names = [name for level in [0, *arguments.levels] for name in write_level(arguments, kernels, level)]
+    write(arguments.out / "host_table.cpp", host_table(names, arguments.own))
 
 
 main()

@@ -29,7 +29,8 @@ function(tandem_levels result)
 endfunction()
 
 # tandem_kernels(TARGET K:AXES... [FOLDER F]): flattens each kernel file of algorithms/ with its headers and embeds the
-# texts. It also compiles them for the host backend in every listed geometry, in both precisions. With FOLDER it takes
+# texts. It also compiles them for the host backend in every listed geometry, in both precisions, and generates a header
+# with the arguments of its kernels for each file, "algorithms/tiled/tiled.cl.h". With FOLDER it takes
 # the kernel files of that folder instead. They register themselves beside the library's at program start, where TARGET
 # is a program or its objects. Call it in the directory of the target, because generated sources are known only there.
 function(tandem_kernels target)
@@ -42,6 +43,7 @@ function(tandem_kernels target)
     set(own --own ${target})
   endif()
   set(script ${PROJECT_SOURCE_DIR}/cmake/embed_kernels.py)
+  set(scripts ${script} ${PROJECT_SOURCE_DIR}/cmake/kernel_arguments.py)
   file(GLOB_RECURSE kernels CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/${folder}/*.cl)
   list(TRANSFORM kernels PREPEND ${PROJECT_SOURCE_DIR}/ OUTPUT_VARIABLE files)
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/backends/lanes.h ${PROJECT_SOURCE_DIR}/backends/portable.h
@@ -76,12 +78,18 @@ function(tandem_kernels target)
       set(of_level_${level} ${of_level_${level}} ${out}/host_v${level}_${part}.cpp)
     endforeach()
   endforeach()
-  add_custom_command(OUTPUT ${generated}
+  list(TRANSFORM kernels PREPEND ${out}/ OUTPUT_VARIABLE argument_headers)
+  list(TRANSFORM argument_headers APPEND .h)
+  add_custom_command(OUTPUT ${generated} ${argument_headers}
     COMMAND ${Python3_EXECUTABLE} ${script} --root ${PROJECT_SOURCE_DIR} --out ${out} --geometries ${geometries}
             --each ${each} --levels ${levels} --higher-k ${TANDEM_HIGHER_K} --kernels ${kernels} ${own}
-    DEPENDS ${script} ${files} ${headers} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
+    DEPENDS ${scripts} ${files} ${headers} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
     COMMENT "Flattening kernels" VERBATIM)
   target_sources(${target} PRIVATE ${generated})
+  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${out}>)
+  # For targets that include the headers without linking with this one.
+  add_custom_target(${target}-arguments DEPENDS ${argument_headers})
+  add_dependencies(${target} ${target}-arguments)
   set(options -Wno-unused-function -Wno-unused-variable -Wno-unused-parameter -Wno-unknown-pragmas -Wno-type-limits)
   if(TANDEM_SANITIZE)
     # With -fsanitize=bounds, g++ 12 reads uninitialised temporaries in certainty.clh: it reports them, and the decisions

@@ -107,6 +107,8 @@ def check(root):
             beside = path.parent / target
             if not (root / target).is_file() and beside.is_file():
                 target = beside.resolve().relative_to(root.resolve()).as_posix()
+            if target.endswith(".cl.h"):  # generated from the kernel file
+                target = target.removesuffix(".h")
             if target in rules.elsewhere:
                 continue
             error = rules.error(name, target) if any(root.glob(target)) else f"no file {target}"

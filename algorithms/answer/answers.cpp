@@ -149,13 +149,10 @@ AnswerTools::AnswerTools(std::shared_ptr<const Bodies> bodies, LaunchShape shape
     auto defines = row_defines(bodies_->geometry(), shape.group_size);
     define(defines, parameters::pair_layout, layout());
     sums_ = device().allocate(16, "sums of a digest");
-    const auto& source = kernel_source("algorithms/answer/digest.cl");
-    pairs_kernel_ = device().compile(source, "digest_pairs", defines);
-    expand_kernel_ = device().compile(source, "expand_pairs", defines);
-    count_kernel_ = device().compile(source, "count_by_body", defines);
-    if (contacts)
-        contacts_kernel_ = device().compile(kernel_source("algorithms/narrow_phase/digest_contacts.cl"),
-                                            "digest_contacts", defines);
+    compile_kernel(device(), pairs_kernel_, defines);
+    compile_kernel(device(), expand_kernel_, defines);
+    compile_kernel(device(), count_kernel_, defines);
+    if (contacts) compile_kernel(device(), contacts_kernel_, defines);
 }
 
 Digest AnswerTools::sums(std::uint64_t count) const {
@@ -167,8 +164,11 @@ Digest AnswerTools::sums(std::uint64_t count) const {
 Digest AnswerTools::digest(const Buffer& pairs, std::uint64_t count) const {
     const StageScope scope(device(), Stage::postprocess);
     device().clear(sums_, 16);
-    const std::array<Argument, 5> arguments{pairs, static_cast<std::uint32_t>(count), bodies_->owners(),
-                                            bodies_->ids(), sums_};
+    const kernels::digest::DigestPairs arguments{.found = pairs,
+                                                 .count = static_cast<std::uint32_t>(count),
+                                                 .owners = bodies_->owners(),
+                                                 .ids = bodies_->ids(),
+                                                 .sums = sums_};
     device().launch(pairs_kernel_, {shape_.groups, shape_.group_size}, arguments);
     return sums(count);
 }
@@ -177,13 +177,14 @@ Digest AnswerTools::contact_digest(const AnswerBuffers& buffers, std::uint64_t c
     if (contacts == 0) return {}; // buffers for contacts may not exist
     const StageScope scope(device(), Stage::postprocess);
     device().clear(sums_, 16);
-    const std::array<Argument, 7> arguments{buffers.pairs.buffer(),
-                                            bodies_->owners(),
-                                            bodies_->ids(),
-                                            buffers.contacts.buffer(contact_ids),
-                                            buffers.contacts.buffer(contact_values),
-                                            static_cast<std::uint32_t>(contacts),
-                                            sums_};
+    const kernels::digest_contacts::DigestContacts arguments{
+        .found = buffers.pairs.buffer(),
+        .owners = bodies_->owners(),
+        .ids = bodies_->ids(),
+        .contact_ids = buffers.contacts.buffer(contact_ids),
+        .value_bits = buffers.contacts.buffer(contact_values),
+        .count = static_cast<std::uint32_t>(contacts),
+        .sums = sums_};
     device().launch(contacts_kernel_, {shape_.groups, shape_.group_size}, arguments);
     return sums(contacts);
 }
@@ -191,12 +192,12 @@ Digest AnswerTools::contact_digest(const AnswerBuffers& buffers, std::uint64_t c
 void AnswerTools::expand(const Buffer& pairs, std::uint64_t first, std::uint64_t count,
                          const Buffer& expanded) const {
     const StageScope scope(device(), Stage::postprocess);
-    const std::array<Argument, 6> arguments{pairs,
-                                            static_cast<std::uint32_t>(first),
-                                            static_cast<std::uint32_t>(count),
-                                            bodies_->owners(),
-                                            bodies_->ids(),
-                                            expanded};
+    const kernels::digest::ExpandPairs arguments{.found = pairs,
+                                                 .first = static_cast<std::uint32_t>(first),
+                                                 .count = static_cast<std::uint32_t>(count),
+                                                 .owners = bodies_->owners(),
+                                                 .ids = bodies_->ids(),
+                                                 .expanded = expanded};
     device().launch(expand_kernel_, {shape_.groups, shape_.group_size}, arguments);
 }
 
@@ -217,8 +218,10 @@ void AnswerTools::count_by_body(const Buffer& pairs, std::uint64_t count,
     const auto sums = device().allocate(words.size() * 4, "pairs by body");
     const StageScope scope(device(), Stage::postprocess);
     device().clear(sums, words.size() * 4);
-    const std::array<Argument, 4> arguments{pairs, static_cast<std::uint32_t>(count), bodies_->owners(),
-                                            sums};
+    const kernels::digest::CountByBody arguments{.found = pairs,
+                                                 .count = static_cast<std::uint32_t>(count),
+                                                 .owners = bodies_->owners(),
+                                                 .counts = sums};
     device().launch(count_kernel_, {shape_.groups, shape_.group_size}, arguments);
     device().download(sums, std::as_writable_bytes(std::span(words)));
     for (std::size_t body = 0; body < words.size(); ++body) {

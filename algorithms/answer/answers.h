@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "algorithms/answer/digest.cl.h"
 #include "algorithms/answer/frame_result.h"
 #include "algorithms/answer/growable_buffer.h"
 #include "algorithms/bodies/bodies.h"
+#include "algorithms/narrow_phase/digest_contacts.cl.h"
 #include "algorithms/traversal.h"
 
 namespace tandem {
@@ -57,7 +59,10 @@ private:
     std::shared_ptr<const Bodies> bodies_;
     LaunchShape shape_;
     Buffer sums_;
-    Kernel pairs_kernel_, expand_kernel_, contacts_kernel_, count_kernel_;
+    KernelOf<kernels::digest::DigestPairs> pairs_kernel_;
+    KernelOf<kernels::digest::ExpandPairs> expand_kernel_;
+    KernelOf<kernels::digest::CountByBody> count_kernel_;
+    KernelOf<kernels::digest_contacts::DigestContacts> contacts_kernel_; ///< null without contacts
 };
 
 /// Makes the part for pairs and contacts in a device's buffers.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Kernels over candidate pairs in a buffer: digest, ids in the scene, and number of pairs by body.
+// Host variants: PRECISION
 #include "backends/portable.h"
 #include "algorithms/answer/pairs.clh"
 

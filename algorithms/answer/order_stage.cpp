@@ -65,15 +65,8 @@ OrderStage::OrderStage(const Bodies& bodies, LaunchShape shape, bool contacts)
     shape_.groups = std::min(shape_.groups, most_groups);
     auto defines = row_defines(bodies.geometry(), shape.group_size);
     define(defines, parameters::pair_layout, bodies.pair_layout());
-    const auto& source = kernel_source("algorithms/answer/sort.cl");
-    const auto compile = [&](Kernel& kernel, const char* entry) {
-        kernel = device.compile(source, entry, defines);
-    };
-    compile(count_pairs_, "count_pairs");
-    compile(sum_parts_, "sum_parts");
-    compile(start_runs_, "start_runs");
-    compile(scatter_pairs_, "scatter_pairs");
-    compile(sort_pairs_, "sort_pairs");
+    const auto compile = [&](auto&... kernels) { (compile_kernel(device, kernels, defines), ...); };
+    compile(count_pairs_, sum_parts_, start_runs_, scatter_pairs_, sort_pairs_);
     const StageScope scope(device, Stage::write);
     firsts_ = uploaded(device, bytes_of(firsts), "first tetrahedra of bodies");
     solids_ = uploaded(device, bytes_of(solids_by_place(bodies, firsts)), "tetrahedra in canonical order");
@@ -81,10 +74,7 @@ OrderStage::OrderStage(const Bodies& bodies, LaunchShape shape, bool contacts)
     counts_ = GrowableBuffer(device, "counts by key", 4, 0);
     pairs_ = GrowableBuffer(device, {{"keys of pairs", 4}, {"places of pairs in runs", 4}}, 0);
     if (!contacts) return;
-    compile(count_contacts_, "count_contacts");
-    compile(scatter_contacts_, "scatter_contacts");
-    compile(sort_contacts_, "sort_contacts");
-    compile(return_contacts_, "return_contacts");
+    compile(count_contacts_, scatter_contacts_, sort_contacts_, return_contacts_);
     contacts_ = GrowableBuffer(device,
                                {{"contacts to sort", 4},
                                 {"keys of contacts", 4},
@@ -94,20 +84,21 @@ OrderStage::OrderStage(const Bodies& bodies, LaunchShape shape, bool contacts)
                                0);
 }
 
-void OrderStage::launch(const Kernel& kernel, std::span<const Argument> arguments) {
-    bodies_.device().launch(kernel, {shape_.groups, shape_.group_size}, arguments);
-}
-
 void OrderStage::begin_counts(std::uint32_t keys) {
     counts_.reserve(keys);
     bodies_.device().clear(counts_.buffer(), std::size_t{keys} * 4);
 }
 
 void OrderStage::start_runs(std::uint32_t keys, bool by_pair, const Status& status) {
-    const std::array<Argument, 5> arguments{counts_.buffer(), keys, std::uint32_t{by_pair ? 1u : 0u}, sums_,
-                                            status.buffer()};
-    launch(sum_parts_, arguments);
-    launch(start_runs_, arguments);
+    const auto run = [&]<class Arguments>(const KernelOf<Arguments>& kernel) {
+        launch(kernel, Arguments{.counts = counts_.buffer(),
+                                 .most = keys,
+                                 .by_pair = std::uint32_t{by_pair ? 1u : 0u},
+                                 .sums = sums_,
+                                 .status = status.buffer()});
+    };
+    run(sum_parts_);
+    run(start_runs_);
 }
 
 void OrderStage::sort_pairs(const Buffer& found, std::uint32_t capacity, const Status& status,
@@ -116,13 +107,31 @@ void OrderStage::sort_pairs(const Buffer& found, std::uint32_t capacity, const S
     pairs_.reserve(whole_quads(capacity));
     const auto &keys = pairs_.buffer(0), &before = pairs_.buffer(1);
     begin_counts(places_);
-    launch(count_pairs_, std::array<Argument, 8>{found, capacity, bodies_.owners(), bodies_.ids(), firsts_,
-                                                 counts_.buffer(), before, status.buffer()});
+    launch(count_pairs_, {.found = found,
+                          .capacity = capacity,
+                          .owners = bodies_.owners(),
+                          .ids = bodies_.ids(),
+                          .firsts = firsts_,
+                          .counts = counts_.buffer(),
+                          .before = before,
+                          .status = status.buffer()});
     start_runs(places_, false, status);
-    launch(scatter_pairs_, std::array<Argument, 9>{found, capacity, bodies_.owners(), bodies_.ids(), firsts_,
-                                                   counts_.buffer(), before, keys, status.buffer()});
-    launch(sort_pairs_, std::array<Argument, 7>{counts_.buffer(), places_, capacity, keys, solids_, sorted,
-                                                status.buffer()});
+    launch(scatter_pairs_, {.found = found,
+                            .capacity = capacity,
+                            .owners = bodies_.owners(),
+                            .ids = bodies_.ids(),
+                            .firsts = firsts_,
+                            .places = counts_.buffer(),
+                            .before = before,
+                            .keys = keys,
+                            .status = status.buffer()});
+    launch(sort_pairs_, {.places = counts_.buffer(),
+                         .count = places_,
+                         .capacity = capacity,
+                         .keys = keys,
+                         .solids = solids_,
+                         .found = sorted,
+                         .status = status.buffer()});
 }
 
 void OrderStage::sort_contacts(const AnswerBuffers& answer, const Status& status) {
@@ -134,15 +143,35 @@ void OrderStage::sort_contacts(const AnswerBuffers& answer, const Status& status
     const auto &rows = contacts_.buffer(0), &keys = contacts_.buffer(1), &before = contacts_.buffer(2);
     const auto &sorted_ids = contacts_.buffer(3), &sorted_values = contacts_.buffer(4);
     begin_counts(pairs);
-    launch(count_contacts_,
-           std::array<Argument, 5>{ids, found.capacity(), counts_.buffer(), before, status.buffer()});
+    launch(count_contacts_, {.contact_ids = ids,
+                             .capacity = found.capacity(),
+                             .counts = counts_.buffer(),
+                             .before = before,
+                             .status = status.buffer()});
     start_runs(pairs, true, status);
-    launch(scatter_contacts_, std::array<Argument, 7>{ids, found.capacity(), counts_.buffer(), before, rows,
-                                                      keys, status.buffer()});
-    launch(sort_contacts_, std::array<Argument, 10>{counts_.buffer(), pairs, found.capacity(), rows, keys,
-                                                    ids, values, sorted_ids, sorted_values, status.buffer()});
-    launch(return_contacts_, std::array<Argument, 6>{sorted_ids, sorted_values, found.capacity(), ids, values,
-                                                     status.buffer()});
+    launch(scatter_contacts_, {.contact_ids = ids,
+                               .capacity = found.capacity(),
+                               .places = counts_.buffer(),
+                               .before = before,
+                               .rows = rows,
+                               .keys = keys,
+                               .status = status.buffer()});
+    launch(sort_contacts_, {.places = counts_.buffer(),
+                            .pair_capacity = pairs,
+                            .capacity = found.capacity(),
+                            .rows = rows,
+                            .keys = keys,
+                            .contact_ids = ids,
+                            .contact_values = values,
+                            .sorted_ids = sorted_ids,
+                            .sorted_values = sorted_values,
+                            .status = status.buffer()});
+    launch(return_contacts_, {.sorted_ids = sorted_ids,
+                              .sorted_values = sorted_values,
+                              .capacity = found.capacity(),
+                              .contact_ids = ids,
+                              .contact_values = values,
+                              .status = status.buffer()});
 }
 
 } // namespace tandem

@@ -3,6 +3,7 @@
 
 #include "algorithms/answer/answers.h"
 #include "algorithms/answer/growable_buffer.h"
+#include "algorithms/answer/sort.cl.h"
 #include "algorithms/answer/status.h"
 
 namespace tandem {
@@ -28,7 +29,10 @@ public:
     void sort_contacts(const AnswerBuffers& answer, const Status& status);
 
 private:
-    void launch(const Kernel& kernel, std::span<const Argument> arguments);
+    template<class Arguments>
+    void launch(const KernelOf<Arguments>& kernel, const std::type_identity_t<Arguments>& arguments) {
+        bodies_.device().launch(kernel, {shape_.groups, shape_.group_size}, arguments);
+    }
     void begin_counts(std::uint32_t keys);
     /// `by_pair`: keys are pairs, of which the answer may have fewer.
     void start_runs(std::uint32_t keys, bool by_pair, const Status& status);
@@ -38,8 +42,16 @@ private:
     std::uint32_t places_ = 0; ///< tetrahedra of all bodies, in input order
     Buffer firsts_, solids_, sums_;
     GrowableBuffer counts_, pairs_, contacts_;
-    Kernel count_pairs_, scatter_pairs_, sort_pairs_, sum_parts_, start_runs_;
-    Kernel count_contacts_, scatter_contacts_, sort_contacts_, return_contacts_; ///< null without contacts
+    KernelOf<kernels::sort::CountPairs> count_pairs_;
+    KernelOf<kernels::sort::SumParts> sum_parts_;
+    KernelOf<kernels::sort::StartRuns> start_runs_;
+    KernelOf<kernels::sort::ScatterPairs> scatter_pairs_;
+    KernelOf<kernels::sort::SortPairs> sort_pairs_;
+    // Null without contacts.
+    KernelOf<kernels::sort::CountContacts> count_contacts_;
+    KernelOf<kernels::sort::ScatterContacts> scatter_contacts_;
+    KernelOf<kernels::sort::SortContacts> sort_contacts_;
+    KernelOf<kernels::sort::ReturnContacts> return_contacts_;
 };
 
 } // namespace tandem

@@ -3,6 +3,7 @@
 // feature. Rows are counted by a first key, whose sums give each key its run of places. Rows go to places of
 // their run in any order. The rank of a row's second key in its run is then its place. Runs are short: most
 // have fewer than 32 rows. Second keys of a run differ.
+// Host variants: PRECISION
 #include "backends/portable.h"
 #include "algorithms/answer/pairs.clh"
 #include "algorithms/answer/parts.clh"

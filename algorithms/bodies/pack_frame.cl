@@ -2,6 +2,7 @@
 // Packs frames in the device's memory, in double or float, and poses of frames in the host's, with the
 // operations of pack.cpp, so that the bits are the same. Rows out of range are counted and packed as if they
 // were at the origin, so that later kernels get finite numbers. The host then rejects the frame.
+// Host variants: PRECISION
 #include "backends/portable.h"
 #include "algorithms/answer/status.clh"
 #include "algorithms/bodies/body.clh"

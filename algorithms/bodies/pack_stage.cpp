@@ -39,10 +39,9 @@ PackStage::PackStage(const Bodies& bodies, LaunchShape shape)
     const auto& scene = bodies.scene();
     check_device(device.info(), bodies.geometry());
     const auto defines = row_defines(bodies.geometry(), shape.group_size);
-    const auto& source = kernel_source("algorithms/bodies/pack_frame.cl");
-    poses_ = device.compile(source, "pack_poses", defines);
-    vertices_ = device.compile(source, "pack_vertices", defines);
-    if (bodies.geometry().motion == Motion::linear) arcs_ = device.compile(source, "pack_arcs", defines);
+    compile_kernel(device, poses_, defines);
+    compile_kernel(device, vertices_, defines);
+    if (bodies.geometry().motion == Motion::linear) compile_kernel(device, arcs_, defines);
     std::vector<std::uint32_t> indices;
     for (std::uint32_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
         first_indices_.push_back(static_cast<std::uint32_t>(indices.size()));
@@ -67,26 +66,31 @@ Grid PackStage::grid_over(std::uint64_t count) const {
 void PackStage::pack_poses(const DeviceRows& rows, const Buffer& poses, const Eigen::Vector3d& origin,
                            const Buffer& status) const {
     const bool has_shifts = static_cast<bool>(shifts_);
-    const std::array<Argument, 12> arguments{poses,
-                                             rows.buffer ? rows.buffer : bodies_.row_table(),
-                                             kind_of(rows),
-                                             bodies_.row_table(),
-                                             bodies_.count(),
-                                             limit_,
-                                             origin.x(),
-                                             origin.y(),
-                                             origin.z(),
-                                             has_shifts ? shifts_ : bodies_.row_table(),
-                                             has_shifts ? 1u : 0u,
-                                             status};
+    const kernels::pack_frame::PackPoses arguments{.poses = poses,
+                                                   .rows = rows.buffer ? rows.buffer : bodies_.row_table(),
+                                                   .kind = kind_of(rows),
+                                                   .bodies = bodies_.row_table(),
+                                                   .count = bodies_.count(),
+                                                   .limit = limit_,
+                                                   .origin_x = origin.x(),
+                                                   .origin_y = origin.y(),
+                                                   .origin_z = origin.z(),
+                                                   .shifts = has_shifts ? shifts_ : bodies_.row_table(),
+                                                   .has_shifts = has_shifts ? 1u : 0u,
+                                                   .status = status};
     bodies_.device().launch(poses_, grid_over(bodies_.count()), arguments);
 }
 
 void PackStage::pack_arcs(const DeviceRows& rows, const DeviceRows& next_rows) const {
     const auto buffer = [&](const DeviceRows& r) { return r.buffer ? r.buffer : bodies_.row_table(); };
-    const std::array<Argument, 8> arguments{bodies_.poses(),     bodies_.next_poses(), buffer(rows),
-                                            kind_of(rows),       buffer(next_rows),    kind_of(next_rows),
-                                            bodies_.row_table(), bodies_.count()};
+    const kernels::pack_frame::PackArcs arguments{.poses = bodies_.poses(),
+                                                  .next_poses = bodies_.next_poses(),
+                                                  .rows = buffer(rows),
+                                                  .kind = kind_of(rows),
+                                                  .next_rows = buffer(next_rows),
+                                                  .next_kind = kind_of(next_rows),
+                                                  .bodies = bodies_.row_table(),
+                                                  .count = bodies_.count()};
     bodies_.device().launch(arcs_, grid_over(bodies_.count()), arguments);
 }
 
@@ -94,12 +98,18 @@ void PackStage::pack_vertices(std::size_t body, const DeviceRows& rows, const Bu
                               const Eigen::Vector3d& origin, const Buffer& status) const {
     const auto count = static_cast<std::uint32_t>(bodies_.mesh(body).numbers.size());
     const auto first_index = first_indices_[bodies_.scene().bodies[body].mesh];
-    const std::array<Argument, 12> arguments{vertices,    bodies_.row(body).vertices,
-                                             indices_,    first_index,
-                                             rows.buffer, kind_of(rows),
-                                             count,       limit_,
-                                             origin.x(),  origin.y(),
-                                             origin.z(),  status};
+    const kernels::pack_frame::PackVertices arguments{.vertices = vertices,
+                                                      .first = bodies_.row(body).vertices,
+                                                      .indices = indices_,
+                                                      .indices_first = first_index,
+                                                      .rows = rows.buffer,
+                                                      .kind = kind_of(rows),
+                                                      .count = count,
+                                                      .limit = limit_,
+                                                      .origin_x = origin.x(),
+                                                      .origin_y = origin.y(),
+                                                      .origin_z = origin.z(),
+                                                      .status = status};
     bodies_.device().launch(vertices_, grid_over(count), arguments);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "algorithms/bodies/bodies.h"
+#include "algorithms/bodies/pack_frame.cl.h"
 #include "algorithms/traversal.h"
 
 namespace tandem {
@@ -32,7 +33,9 @@ private:
     const Bodies& bodies_;
     LaunchShape shape_;
     double limit_; ///< largest magnitude of a coordinate
-    Kernel poses_, vertices_, arcs_;
+    KernelOf<kernels::pack_frame::PackPoses> poses_;
+    KernelOf<kernels::pack_frame::PackVertices> vertices_;
+    KernelOf<kernels::pack_frame::PackArcs> arcs_; ///< null without motion
     Buffer shifts_;                            ///< Scene::shifts by body; empty unless the scene is centred
     Buffer indices_;                           ///< OrderedMesh::numbers of the meshes of deformable bodies
     std::vector<std::uint32_t> first_indices_; ///< by mesh, in indices_

@@ -36,9 +36,9 @@ PoseStage::PoseStage(const Bodies& bodies, LaunchShape shape)
                                       shape.groups),
             shape.group_size},
       numbers_(numbers_per_pose * bodies.count()),
-      rows_(bodies.device().allocate(numbers_.size() * sizeof(double), "poses of the host")),
-      kernel_(bodies.device().compile(kernel_source("algorithms/bodies/pack_frame.cl"), "pack_unit_poses",
-                                      row_defines(bodies.geometry(), shape.group_size))) {}
+      rows_(bodies.device().allocate(numbers_.size() * sizeof(double), "poses of the host")) {
+    compile_kernel(bodies.device(), kernel_, row_defines(bodies.geometry(), shape.group_size));
+}
 
 void PoseStage::launch(const Frame& frame, bool all) {
     if (!bodies_.changes_poses(all)) return;
@@ -54,7 +54,8 @@ void PoseStage::launch(const Frame& frame, bool all) {
         device.upload(rows_, bytes_of(numbers_));
     }
     const StageScope scope(device, Stage::preprocess);
-    const std::array<Argument, 3> arguments{bodies_.poses(), rows_, bodies_.count()};
+    const kernels::pack_frame::PackUnitPoses arguments{
+        .poses = bodies_.poses(), .rows = rows_, .count = bodies_.count()};
     device.launch(kernel_, grid_, arguments);
 }
 

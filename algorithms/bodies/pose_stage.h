@@ -2,6 +2,7 @@
 #pragma once
 
 #include "algorithms/bodies/bodies.h"
+#include "algorithms/bodies/pack_frame.cl.h"
 #include "algorithms/stages.h"
 
 #include <memory>
@@ -28,7 +29,7 @@ private:
     Grid grid_;
     std::vector<double> numbers_; ///< tx ty tz qw qx qy qz of each body
     Buffer rows_;
-    Kernel kernel_;
+    KernelOf<kernels::pack_frame::PackUnitPoses> kernel_;
 };
 
 } // namespace tandem

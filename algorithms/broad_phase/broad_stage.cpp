@@ -37,9 +37,8 @@ BroadStage::BroadStage(const Bodies& bodies, const Buffer& volumes, LaunchShape 
     auto defines = geometry_defines(geometry, shape_.group_size);
     define(defines, parameters::self, self);
     if (has_filters(bodies.scene())) defines["FILTERED"] = "1";
-    const auto& source = kernel_source("algorithms/broad_phase/broad.cl");
-    if (tiles_of(count) > 1) bound_ = device.compile(source, "bound_tiles", defines);
-    find_ = device.compile(source, "find_body_pairs", defines);
+    if (tiles_of(count) > 1) compile_kernel(device, bound_, defines);
+    compile_kernel(device, find_, defines);
     const auto volume = static_cast<std::uint64_t>(geometry.k) * real_bytes(geometry);
     order_ = device.allocate(std::uint64_t{count} * 4, "order of bodies");
     roots_ = device.allocate(count * volume, "root volumes");
@@ -117,12 +116,21 @@ void BroadStage::upload(const std::vector<std::uint32_t>& order) {
 void BroadStage::launch(const Buffer& pairs, std::uint32_t capacity, const Buffer& status) {
     const StageScope scope(bodies_.device(), Stage::broad);
     if (tiles_of(count_) > 1) {
-        const std::array<Argument, 5> bound{volumes_, order_, count_, roots_, unions_};
+        const kernels::broad::BoundTiles bound{
+            .volumes = volumes_, .order = order_, .body_count = count_, .roots = roots_, .unions = unions_};
         bodies_.device().launch(bound_, {tiles_of(count_), shape_.group_size}, bound);
     }
-    const std::array<Argument, 11> find{volumes_, roots_, unions_,       order_, bodies_.row_table(),
-                                        filters_, count_, moving_count_, pairs,  capacity,
-                                        status};
+    const kernels::broad::FindBodyPairs find{.volumes = volumes_,
+                                             .roots = roots_,
+                                             .unions = unions_,
+                                             .order = order_,
+                                             .bodies = bodies_.row_table(),
+                                             .filters = filters_,
+                                             .body_count = count_,
+                                             .moving_count = moving_count_,
+                                             .pairs = pairs,
+                                             .capacity = capacity,
+                                             .status = status};
     const auto tile_pairs = tiles_of(moving_count_) * tiles_of(count_);
     bodies_.device().launch(find_, {std::max(1u, std::min(shape_.groups, tile_pairs)), shape_.group_size},
                             find);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "algorithms/bodies/bodies.h"
+#include "algorithms/broad_phase/broad.cl.h"
 #include "algorithms/distributed/subdomain.h"
 #include "algorithms/traversal.h"
 
@@ -44,7 +45,8 @@ private:
     std::uint32_t moving_count_ = 0; ///< moving bodies, which are first in it; every pair has one
     std::vector<Eigen::Vector3d> mesh_centres_;
     Buffer order_, roots_, unions_, filters_;
-    Kernel bound_, find_;
+    KernelOf<kernels::broad::BoundTiles> bound_; ///< null for a single tile
+    KernelOf<kernels::broad::FindBodyPairs> find_;
 };
 
 } // namespace tandem

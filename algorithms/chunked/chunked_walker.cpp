@@ -41,15 +41,15 @@ void ChunkedWalker::do_compile(const WalkBuild& build) {
     define(defines, chunked_parameters::seed_target, target_);
     auto of_seeds = defines;
     define(of_seeds, chunked_parameters::root_test, root_test_);
-    const auto& seeds = kernel_source("algorithms/chunked/seeds.cl");
-    count_kernel_ = device().compile(seeds, "count_seeds", of_seeds);
-    scan_kernel_ = device().compile(seeds, "scan_seeds", of_seeds);
+    compile_kernel(device(), count_kernel_, of_seeds);
+    compile_kernel(device(), scan_kernel_, of_seeds);
     build.add_to(defines);
     define(defines, chunked_parameters::descent,
            larger_ ? chunked_parameters::Descent::larger : chunked_parameters::Descent::both);
-    const bool in_groups = schedule_ == chunked_parameters::Schedule::group;
-    traverse_kernel_ = device().compile(kernel_source("algorithms/chunked/chunked.cl"),
-                                        in_groups ? "traverse_in_groups" : "traverse", defines);
+    if (is_in_groups())
+        compile_kernel(device(), groups_kernel_, defines);
+    else
+        compile_kernel(device(), traverse_kernel_, defines);
 }
 
 std::uint32_t ChunkedWalker::wanted_level(std::uint32_t a, std::uint32_t b, std::uint64_t pair_count) const {
@@ -103,36 +103,48 @@ void ChunkedWalker::make_seeds(const WalkTask& task) {
     const StageScope scope(device(), Stage::seed);
     reserve_starts(task.most_pairs());
     const auto group = shape_.group_size;
-    const std::array<Argument, 8> count{trees_.volumes(), trees_.tree_table(), trees_.level_table(),
-                                        task.body_pairs,  task.pair_capacity,  top_level_ + 1,
-                                        starts_.buffer(), task.status.buffer()};
+    const kernels::seeds::CountSeeds count{.volumes = trees_.volumes(),
+                                           .trees = trees_.tree_table(),
+                                           .levels = trees_.level_table(),
+                                           .pairs = task.body_pairs,
+                                           .pair_capacity = task.pair_capacity,
+                                           .level_count = top_level_ + 1,
+                                           .seeds = starts_.buffer(),
+                                           .status = task.status.buffer()};
     const auto needed = (std::uint64_t{task.most_pairs()} + group - 1) / group;
     device().launch(count_kernel_, {std::clamp<std::uint64_t>(needed, 1, shape_.groups), group}, count);
-    const std::array<Argument, 3> scan{starts_.buffer(), task.pair_capacity, task.status.buffer()};
+    const kernels::seeds::ScanSeeds scan{
+        .seeds = starts_.buffer(), .pair_capacity = task.pair_capacity, .status = task.status.buffer()};
     device().launch(scan_kernel_, {top_level_ + 1, group}, scan);
 }
 
 void ChunkedWalker::traverse(const WalkTask& task, std::uint32_t level, std::uint32_t pair_capacity) {
     const StageScope scope(device(), Stage::traverse);
     const auto& bodies = trees_.bodies();
-    const std::array<Argument, 17> arguments{trees_.nodes(),
-                                             trees_.tree_table(),
-                                             trees_.level_table(),
-                                             bodies.row_table(),
-                                             bodies.ids(),
-                                             bodies.topology(),
-                                             task.body_pairs,
-                                             pair_capacity,
-                                             level,
-                                             starts_.buffer(),
-                                             handed(level),
-                                             handed_.capacity(),
-                                             handed(level + 1),
-                                             handed_.capacity(),
-                                             task.answer.pairs.buffer(),
-                                             task.answer.pairs.capacity(),
-                                             task.status.buffer()};
-    device().launch(traverse_kernel_, {shape_.groups, shape_.group_size}, arguments);
+    const auto launch = [&]<class Arguments>(const KernelOf<Arguments>& kernel) {
+        device().launch(kernel, {shape_.groups, shape_.group_size},
+                        Arguments{.nodes = trees_.nodes(),
+                                  .trees = trees_.tree_table(),
+                                  .levels = trees_.level_table(),
+                                  .bodies = bodies.row_table(),
+                                  .ids = bodies.ids(),
+                                  .tetrahedra = bodies.topology(),
+                                  .pairs = task.body_pairs,
+                                  .pair_capacity = pair_capacity,
+                                  .level = level,
+                                  .seeds = starts_.buffer(),
+                                  .handed = handed(level),
+                                  .handed_capacity = handed_.capacity(),
+                                  .below = handed(level + 1),
+                                  .below_capacity = handed_.capacity(),
+                                  .found = task.answer.pairs.buffer(),
+                                  .capacity = task.answer.pairs.capacity(),
+                                  .status = task.status.buffer()});
+    };
+    if (is_in_groups())
+        launch(groups_kernel_);
+    else
+        launch(traverse_kernel_);
 }
 
 void ChunkedWalker::do_launch(const WalkTask& task) {

@@ -2,7 +2,9 @@
 #pragma once
 
 #include "algorithms/answer/growable_buffer.h"
+#include "algorithms/chunked/chunked.cl.h"
 #include "algorithms/chunked/chunked_parameters.h"
+#include "algorithms/chunked/seeds.cl.h"
 #include "algorithms/hierarchy/chunk_trees.h"
 #include "algorithms/stages.h"
 
@@ -37,6 +39,7 @@ protected:
 private:
     void do_compile(const WalkBuild& build) override;
     void do_launch(const WalkTask& task) override;
+    bool is_in_groups() const { return schedule_ == chunked_parameters::Schedule::group; }
     bool do_grow(const Status& status) override;
     void do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const override;
 
@@ -57,7 +60,11 @@ private:
     std::uint32_t top_level_ = 0; ///< highest level at which any pair of the scene's meshes has seeds
     GrowableBuffer handed_;       ///< seeds handed down to even and odd levels, one column each
     GrowableBuffer starts_;
-    Kernel count_kernel_, scan_kernel_, traverse_kernel_;
+    KernelOf<kernels::seeds::CountSeeds> count_kernel_;
+    KernelOf<kernels::seeds::ScanSeeds> scan_kernel_;
+    // One of them, by the schedule.
+    KernelOf<kernels::chunked::Traverse> traverse_kernel_;
+    KernelOf<kernels::chunked::TraverseInGroups> groups_kernel_;
 };
 
 } // namespace tandem

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Kernels between launches of walks: they fill the queues with roots and even them out. They know nothing of
 // bounds, and their groups have a size of their own, so that a file of their own compiles for few settings.
+// Host variants: PRECISION
 #include "backends/portable.h"
 #include "algorithms/broad_phase/body_pairs.clh"
 #include "algorithms/gproximity/queues.clh"

@@ -64,18 +64,18 @@ void QueueWalker::do_compile(const WalkBuild& build) {
     auto defines = trees_.defines(shape_.group_size);
     build.add_to(defines);
     add_defines(sizes_, defines);
-    traverse_ =
-        device().compile(kernel_source("algorithms/gproximity/gproximity.cl"), "traverse_queues", defines);
-    const auto compile = [&](std::string_view entry, std::uint32_t group_size) {
+    compile_kernel(device(), traverse_, defines);
+    const auto compile = [&](auto& kernel, std::uint32_t group_size) {
         Defines own{{"PRECISION", "32"}}; // these kernels have no reals
         define(own, parameters::group_size, group_size);
-        return device().compile(kernel_source("algorithms/gproximity/balance.cl"), entry, own);
+        compile_kernel(device(), kernel, own);
     };
-    const bool serial = sizes_.balance == BalanceMethod::serial;
-    scatter_ = compile("scatter_roots", shape_.group_size);
-    plan_ = compile("plan_balance", sizes_.balance_group_size);
-    move_ = serial ? compile("move_balance_serially", sizes_.balance_group_size)
-                   : compile("move_balance", shape_.group_size);
+    compile(scatter_, shape_.group_size);
+    compile(plan_, sizes_.balance_group_size);
+    if (sizes_.balance == BalanceMethod::serial)
+        compile(move_serially_, sizes_.balance_group_size);
+    else
+        compile(move_, shape_.group_size);
 }
 
 std::uint64_t QueueWalker::queue_bytes() const {
@@ -108,8 +108,13 @@ void QueueWalker::do_report(const Status& status, std::map<std::string_view, std
 /// Spreads the roots of body pairs over the queues. The body pairs are already on the device.
 void QueueWalker::seed(const WalkTask& task, std::uint32_t first, std::uint32_t most) {
     const StageScope scope(device(), Stage::seed);
-    const std::array<Argument, 7> arguments{items(), counts_, sizes_.groups,       queue_capacity(),
-                                            first,   most,    task.status.buffer()};
+    const kernels::balance::ScatterRoots arguments{.items = items(),
+                                                   .counts = counts_,
+                                                   .queues = sizes_.groups,
+                                                   .queue_capacity = queue_capacity(),
+                                                   .first = first,
+                                                   .most = most,
+                                                   .status = task.status.buffer()};
     device().launch(scatter_, {shape_.groups, shape_.group_size}, arguments);
 }
 
@@ -139,19 +144,19 @@ void QueueWalker::do_clear_idle() { device().clear(idle_, 4); }
 
 void QueueWalker::traverse(const WalkTask& task) {
     const auto& bodies = trees_.bodies();
-    const std::array<Argument, 13> arguments{trees_.nodes(),
-                                             trees_.tree_table(),
-                                             bodies.row_table(),
-                                             bodies.ids(),
-                                             bodies.topology(),
-                                             task.body_pairs,
-                                             items(),
-                                             counts_,
-                                             queue_capacity(),
-                                             idle_,
-                                             task.answer.pairs.buffer(),
-                                             task.answer.pairs.capacity(),
-                                             task.status.buffer()};
+    const kernels::gproximity::TraverseQueues arguments{.nodes = trees_.nodes(),
+                                                        .trees = trees_.tree_table(),
+                                                        .bodies = bodies.row_table(),
+                                                        .ids = bodies.ids(),
+                                                        .tetrahedra = bodies.topology(),
+                                                        .pairs = task.body_pairs,
+                                                        .items = items(),
+                                                        .counts = counts_,
+                                                        .queue_capacity = queue_capacity(),
+                                                        .idle = idle_,
+                                                        .found = task.answer.pairs.buffer(),
+                                                        .capacity = task.answer.pairs.capacity(),
+                                                        .status = task.status.buffer()};
     {
         const StageScope scope(device(), Stage::write);
         do_clear_idle();
@@ -166,14 +171,27 @@ void QueueWalker::plan_and_move() {
     const auto high = static_cast<std::uint32_t>(queue_capacity() > margin ? queue_capacity() - margin : 0);
     const auto low = 3 * shape_.group_size;
     const StageScope scope(device(), Stage::balance);
-    const std::array<Argument, 6> plan{counts_, sizes_.groups, low, high, starts_, totals_};
+    const kernels::balance::PlanBalance plan{.counts = counts_,
+                                             .queues = sizes_.groups,
+                                             .low = low,
+                                             .high = high,
+                                             .starts = starts_,
+                                             .totals = totals_};
     device().launch(plan_, {1, sizes_.balance_group_size}, plan);
-    const std::array<Argument, 7> move{items(),          target_items(), counts_, sizes_.groups,
-                                       queue_capacity(), starts_,        totals_};
+    const auto move = [&]<class Arguments>(const KernelOf<Arguments>& kernel, Grid grid) {
+        device().launch(kernel, grid,
+                        Arguments{.from = items(),
+                                  .to = target_items(),
+                                  .counts = counts_,
+                                  .queues = sizes_.groups,
+                                  .queue_capacity = queue_capacity(),
+                                  .starts = starts_,
+                                  .totals = totals_});
+    };
     if (sizes_.balance == BalanceMethod::serial)
-        device().launch(move_, {1, sizes_.balance_group_size}, move);
+        move(move_serially_, {1, sizes_.balance_group_size});
     else
-        device().launch(move_, {shape_.groups, shape_.group_size}, move);
+        move(move_, {shape_.groups, shape_.group_size});
 }
 
 /// Plans and moves. Returns the number of items left, at most MOST_QUEUE_ITEMS, and whether they moved.

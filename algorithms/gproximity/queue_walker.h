@@ -2,6 +2,8 @@
 #pragma once
 
 #include "algorithms/answer/growable_buffer.h"
+#include "algorithms/gproximity/balance.cl.h"
+#include "algorithms/gproximity/gproximity.cl.h"
 #include "algorithms/gproximity/gproximity_settings.h"
 #include "algorithms/hierarchy/chunk_trees.h"
 #include "algorithms/stages.h"
@@ -54,7 +56,12 @@ private:
     GrowableBuffer queues_; ///< two arrays of queues, one column each; row i: item i of every queue
     std::size_t side_ = 0;  ///< the column of items()
     Buffer counts_, starts_, totals_, idle_;
-    Kernel scatter_, traverse_, plan_, move_;
+    KernelOf<kernels::balance::ScatterRoots> scatter_;
+    KernelOf<kernels::gproximity::TraverseQueues> traverse_;
+    KernelOf<kernels::balance::PlanBalance> plan_;
+    // One of them, by the method of balancing.
+    KernelOf<kernels::balance::MoveBalance> move_;
+    KernelOf<kernels::balance::MoveBalanceSerially> move_serially_;
 };
 
 /// Counters of this walk, in addition to those of every walk.

@@ -36,8 +36,8 @@ ChunkTrees::ChunkTrees(const Bodies& bodies, std::uint32_t leaves, std::uint32_t
     }
     lay_out();
     plan_strips();
-    strips_kernel_ = compile("refit_strips");
-    tops_kernel_ = compile("refit_tops");
+    compile_kernel(device_, strips_kernel_, refit_defines());
+    compile_kernel(device_, tops_kernel_, refit_defines());
     upload_static();
 }
 
@@ -47,10 +47,10 @@ Defines ChunkTrees::defines(std::uint32_t group_size) const {
     return defines;
 }
 
-Kernel ChunkTrees::compile(std::string_view entry) const {
+Defines ChunkTrees::refit_defines() const {
     auto own = defines(shape_.group_size);
     own["TILE_NODES"] = std::to_string(shape_.tile_nodes);
-    return device_.compile(kernel_source("algorithms/hierarchy/refit.cl"), entry, own);
+    return own;
 }
 
 /// Fills the rows of levels by mesh and the rows of trees by body.
@@ -167,27 +167,31 @@ void ChunkTrees::launch_strips(bool all) {
         if (jobs == 0) continue;
         const auto paired = in_pairs(bodies_.geometry()) ? 2u : 0u; // depths
         const auto first_depth = s.height > paired ? s.height - paired : 0;
-        const std::array<Argument, 14> arguments{nodes_,
-                                                 tree_table_,
-                                                 level_table_,
-                                                 bodies_.poses(),
-                                                 bodies_.tetrahedra(),
-                                                 bodies_.vertices(),
-                                                 bodies_.next_poses(),
-                                                 bodies_.next_vertices(),
-                                                 job_table_,
-                                                 s.first_job,
-                                                 jobs,
-                                                 s.level,
-                                                 s.height,
-                                                 first_depth};
+        const kernels::refit::RefitStrips arguments{.nodes = nodes_,
+                                                    .trees = tree_table_,
+                                                    .levels = level_table_,
+                                                    .poses = bodies_.poses(),
+                                                    .tetrahedra = bodies_.tetrahedra(),
+                                                    .vertices = bodies_.vertices(),
+                                                    .next_poses = bodies_.next_poses(),
+                                                    .next_vertices = bodies_.next_vertices(),
+                                                    .jobs = job_table_,
+                                                    .first_job = s.first_job,
+                                                    .job_count = jobs,
+                                                    .level = s.level,
+                                                    .height = s.height,
+                                                    .first_depth = first_depth};
         device_.launch(strips_kernel_, {groups_for(jobs, per_group), shape_.group_size}, arguments);
     }
 }
 
 void ChunkTrees::launch_tops(bool all) {
-    const std::array<Argument, 6> arguments{nodes_,       volumes_,    tree_table_,
-                                            level_table_, body_order_, first_top_level_};
+    const kernels::refit::RefitTops arguments{.nodes = nodes_,
+                                              .volumes = volumes_,
+                                              .trees = tree_table_,
+                                              .levels = level_table_,
+                                              .chosen = body_order_,
+                                              .first_level = first_top_level_};
     const auto bodies = all ? ordered_bodies_ : moving_bodies_;
     if (bodies > 0) device_.launch(tops_kernel_, {bodies, shape_.group_size}, arguments);
 }
@@ -221,7 +225,7 @@ void ChunkTrees::mask_skipped(const Frame& frame) {
         fresh_ = true;
     }
     if (masked_.bodies == 0) return;
-    if (!masked_rows_) empty_kernel_ = compile("empty_nodes");
+    if (!masked_rows_) compile_kernel(device_, empty_kernel_, refit_defines());
     upload_masked();
 }
 
@@ -231,7 +235,8 @@ void ChunkTrees::do_refit(const Frame& frame, bool all) {
     const StageScope scope(device_, Stage::refit);
     launch_strips(all);
     if (masked_.bodies > 0) {
-        const std::array<Argument, 4> arguments{nodes_, masked_rows_, masked_starts_, masked_.rounds};
+        const kernels::refit::EmptyNodes arguments{
+            .nodes = nodes_, .rows = masked_rows_, .starts = masked_starts_, .rounds = masked_.rounds};
         device_.launch(empty_kernel_, {masked_.bodies, shape_.group_size}, arguments);
     }
     launch_tops(all);

@@ -5,6 +5,7 @@
 #include "algorithms/hierarchy/masked_elements.h"
 #include "algorithms/hierarchy/hierarchy.h"
 #include "algorithms/hierarchy/levels.h"
+#include "algorithms/hierarchy/refit.cl.h"
 #include "algorithms/hierarchy/strips.h"
 
 namespace tandem {
@@ -54,7 +55,7 @@ private:
     const Buffer& do_nodes() const override { return nodes_; }
     std::size_t do_bytes() const override;
 
-    Kernel compile(std::string_view entry) const;
+    Defines refit_defines() const;
     void lay_out();
     void plan_strips();
     void plan_strip(std::uint32_t level, bool fixed, std::uint32_t top);
@@ -84,7 +85,9 @@ private:
     MaskedElements masked_;                           ///< plan for skipped_
     Buffer nodes_, volumes_, tree_table_, level_table_, job_table_, body_order_;
     Buffer masked_rows_, masked_starts_;
-    Kernel strips_kernel_, tops_kernel_, empty_kernel_;
+    KernelOf<kernels::refit::RefitStrips> strips_kernel_;
+    KernelOf<kernels::refit::RefitTops> tops_kernel_;
+    KernelOf<kernels::refit::EmptyNodes> empty_kernel_;
 };
 
 } // namespace tandem

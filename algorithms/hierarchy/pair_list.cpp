@@ -26,8 +26,7 @@ PairList::PairList(const ChunkTrees& trees, std::span<const Pair> pairs)
     pairs_ = device.allocate(rows.size() * 4, "listed pairs");
     device.upload(pairs_, bytes_of(rows));
     answers_ = device.allocate(pairs.size() * 4, "answers to listed pairs");
-    kernel_ = device.compile(kernel_source("algorithms/hierarchy/pair_list.cl"), "test_pair_list",
-                             trees.defines(trees.group_size()));
+    compile_kernel(device, kernel_, trees.defines(trees.group_size()));
 }
 
 std::vector<std::uint8_t> PairList::run() {
@@ -35,9 +34,13 @@ std::vector<std::uint8_t> PairList::run() {
     std::vector<std::uint32_t> answers(count_);
     {
         const StageScope scope(device, Stage::traverse);
-        const std::array<Argument, 7> arguments{
-            trees_.nodes(), trees_.volumes(), trees_.tree_table(), trees_.level_table(), pairs_,
-            count_,         answers_};
+        const kernels::pair_list::TestPairList arguments{.nodes = trees_.nodes(),
+                                                         .volumes = trees_.volumes(),
+                                                         .trees = trees_.tree_table(),
+                                                         .levels = trees_.level_table(),
+                                                         .pairs = pairs_,
+                                                         .pair_count = count_,
+                                                         .answers = answers_};
         const std::uint64_t groups = (std::uint64_t{count_} + trees_.group_size() - 1) / trees_.group_size();
         device.launch(kernel_, {std::clamp<std::uint64_t>(groups, 1, 1 << 16), trees_.group_size()},
                       arguments);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "algorithms/hierarchy/chunk_trees.h"
+#include "algorithms/hierarchy/pair_list.cl.h"
 #include "scenes/contact.h"
 
 #include <span>
@@ -24,7 +25,7 @@ private:
     const ChunkTrees& trees_;
     std::uint32_t count_;
     Buffer pairs_, answers_;
-    Kernel kernel_;
+    KernelOf<kernels::pair_list::TestPairList> kernel_;
 };
 
 } // namespace tandem

@@ -2,6 +2,7 @@
 // Stable radix sort of keys with values, RADIX_BITS bits a pass, from the lowest digit up. A pass has two
 // launches with the same grid. Each work-group counts the digits of its part of the rows, then moves these
 // rows in order. No group waits for another.
+// Host variants: PRECISION
 #include "backends/portable.h"
 #include "algorithms/answer/parts.clh"
 

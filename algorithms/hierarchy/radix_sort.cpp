@@ -27,10 +27,9 @@ RadixSort::RadixSort(Device& device, LaunchShape shape, std::uint32_t capacity)
     for (auto& keys : keys_) keys = device.allocate(rows * 4, "keys to sort");
     for (auto& values : values_) values = device.allocate(rows * 4, "values to sort");
     counts_ = device.allocate(grid(capacity).groups * digits * 4, "counts of digits");
-    const auto& source = kernel_source("algorithms/hierarchy/radix_sort.cl");
     const Defines defines{{"GROUP_SIZE", std::to_string(shape.group_size)}, {"PRECISION", "32"}};
-    count_ = device.compile(source, "count_digits", defines);
-    scatter_ = device.compile(source, "scatter_digits", defines);
+    compile_kernel(device, count_, defines);
+    compile_kernel(device, scatter_, defines);
 }
 
 Grid RadixSort::grid(std::uint32_t count) const {
@@ -40,10 +39,17 @@ Grid RadixSort::grid(std::uint32_t count) const {
 void RadixSort::launch(std::uint32_t count, const Buffer& flag) const {
     for (std::uint32_t pass = 0; pass < key_bits / radix_bits; ++pass) {
         const auto from = pass % 2, to = 1 - from, shift = pass * radix_bits;
-        const std::array<Argument, 5> counting{keys_[from], count, shift, flag, counts_};
+        const kernels::radix_sort::CountDigits counting{
+            .keys = keys_[from], .count = count, .shift = shift, .flag = flag, .counts = counts_};
         device_.launch(count_, grid(count), counting);
-        const std::array<Argument, 8> moving{keys_[from], values_[from], count,     shift,
-                                             flag,        counts_,       keys_[to], values_[to]};
+        const kernels::radix_sort::ScatterDigits moving{.keys = keys_[from],
+                                                        .values = values_[from],
+                                                        .count = count,
+                                                        .shift = shift,
+                                                        .flag = flag,
+                                                        .counts = counts_,
+                                                        .sorted_keys = keys_[to],
+                                                        .sorted_values = values_[to]};
         device_.launch(scatter_, grid(count), moving);
     }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "algorithms/hierarchy/radix_sort.cl.h"
 #include "algorithms/traversal.h"
 
 namespace tandem {
@@ -26,7 +27,8 @@ private:
     LaunchShape shape_;
     std::array<Buffer, 2> keys_, values_; ///< rows before and after every other pass
     Buffer counts_;
-    Kernel count_, scatter_;
+    KernelOf<kernels::radix_sort::CountDigits> count_;
+    KernelOf<kernels::radix_sort::ScatterDigits> scatter_;
 };
 
 } // namespace tandem

@@ -61,15 +61,13 @@ SceneTree::SceneTree(const Bodies& bodies, LaunchShape shape, SelfPairs self, st
     boxes_ = device_.allocate(boxes * node, "boxes of leaves");
     box_owners_ = device_.allocate(boxes * row, "owners of boxes");
     sort_.emplace(device_, shape_, most);
-    const auto compile = [&](std::string_view file, std::string_view entry) {
-        return device_.compile(kernel_source(file), entry, defines(shape_.group_size));
-    };
-    begin_ = compile("algorithms/hierarchy/scene_build.cl", "begin_build");
-    code_ = compile("algorithms/hierarchy/scene_build.cl", "code_leaves");
-    link_ = compile("algorithms/hierarchy/scene_build.cl", "link_nodes");
-    copy_ = compile("algorithms/hierarchy/scene_bounds.cl", "copy_leaf_bounds");
-    boxes_kernel_ = compile("algorithms/hierarchy/scene_bounds.cl", "bound_boxes");
-    inner_kernel_ = compile("algorithms/hierarchy/scene_bounds.cl", "bound_inner_nodes");
+    const auto own = defines(shape_.group_size);
+    compile_kernel(device_, begin_, own);
+    compile_kernel(device_, code_, own);
+    compile_kernel(device_, link_, own);
+    compile_kernel(device_, copy_, own);
+    compile_kernel(device_, boxes_kernel_, own);
+    compile_kernel(device_, inner_kernel_, own);
     upload_rows();
 }
 
@@ -123,35 +121,61 @@ Grid SceneTree::grid(std::uint64_t items) const {
 }
 
 void SceneTree::build() {
-    const std::array<Argument, 7> begin{
-        trees_.volumes(), body_list_, body_count_, std::uint32_t{builds_next_ ? 1u : 0u},
-        period_,          state_,     region_};
+    const kernels::scene_build::BeginBuild begin{.volumes = trees_.volumes(),
+                                                 .bodies = body_list_,
+                                                 .body_count = body_count_,
+                                                 .request = std::uint32_t{builds_next_ ? 1u : 0u},
+                                                 .period = period_,
+                                                 .state = state_,
+                                                 .region = region_};
     device_.launch(begin_, {1, shape_.group_size}, begin);
-    const std::array<Argument, 7> code{rows_,  count_,        trees_.nodes(), region_,
-                                       state_, sort_->keys(), sort_->values()};
+    const kernels::scene_build::CodeLeaves code{.rows = rows_,
+                                                .count = count_,
+                                                .nodes = trees_.nodes(),
+                                                .region = region_,
+                                                .state = state_,
+                                                .keys = sort_->keys(),
+                                                .values = sort_->values()};
     device_.launch(code_, grid(count_), code);
     sort_->launch(count_, state_);
-    const std::array<Argument, 7> link{sort_->keys(), sort_->values(), rows_, count_,
-                                       state_,        leaves_,         inner_};
+    const kernels::scene_build::LinkNodes link{.keys = sort_->keys(),
+                                               .values = sort_->values(),
+                                               .rows = rows_,
+                                               .count = count_,
+                                               .state = state_,
+                                               .leaves = leaves_,
+                                               .inner = inner_};
     device_.launch(link_, grid(count_), link);
     builds_next_ = false;
 }
 
 /// Two levels of boxes a launch, after the lowest, which has a launch of its own: it reads the most.
 void SceneTree::bound() {
-    const std::array<Argument, 4> copy{trees_.nodes(), leaves_, count_, leaf_bounds_};
+    const kernels::scene_bounds::CopyLeafBounds copy{
+        .nodes = trees_.nodes(), .leaves = leaves_, .count = count_, .bounds = leaf_bounds_};
     device_.launch(copy_, grid(std::uint64_t{count_} * static_cast<std::uint64_t>(bodies().geometry().k)),
                    copy);
     const auto levels = box_levels(count_);
     for (std::uint32_t level = 1; level <= levels.size();) {
         const std::uint32_t both = level > 1 && level < levels.size() ? 2 : 1;
-        const std::array<Argument, 7> boxes{leaf_bounds_, leaves_, count_, level, both, boxes_, box_owners_};
+        const kernels::scene_bounds::BoundBoxes boxes{.bounds = leaf_bounds_,
+                                                      .leaves = leaves_,
+                                                      .count = count_,
+                                                      .first_level = level,
+                                                      .levels = both,
+                                                      .boxes = boxes_,
+                                                      .owners = box_owners_};
         const auto items = levels[level - 1] + (both == 2 ? levels[level] : 0);
         device_.launch(boxes_kernel_, grid(items), boxes);
         level += both;
     }
-    const std::array<Argument, 7> inner{leaf_bounds_, leaves_, count_,       boxes_,
-                                        box_owners_,  inner_,  inner_bounds_};
+    const kernels::scene_bounds::BoundInnerNodes inner{.bounds = leaf_bounds_,
+                                                       .leaves = leaves_,
+                                                       .count = count_,
+                                                       .boxes = boxes_,
+                                                       .owners = box_owners_,
+                                                       .inner = inner_,
+                                                       .inner_bounds = inner_bounds_};
     device_.launch(inner_kernel_, grid(count_ - 1), inner);
 }
 

@@ -3,6 +3,8 @@
 
 #include "algorithms/hierarchy/chunk_trees.h"
 #include "algorithms/hierarchy/radix_sort.h"
+#include "algorithms/hierarchy/scene_bounds.cl.h"
+#include "algorithms/hierarchy/scene_build.cl.h"
 
 #include <optional>
 
@@ -66,7 +68,12 @@ private:
     std::optional<RadixSort> sort_;
     Buffer rows_, body_list_, region_, state_, leaves_, inner_, leaf_bounds_, inner_bounds_, boxes_,
         box_owners_;
-    Kernel begin_, code_, link_, copy_, boxes_kernel_, inner_kernel_;
+    KernelOf<kernels::scene_build::BeginBuild> begin_;
+    KernelOf<kernels::scene_build::CodeLeaves> code_;
+    KernelOf<kernels::scene_build::LinkNodes> link_;
+    KernelOf<kernels::scene_bounds::CopyLeafBounds> copy_;
+    KernelOf<kernels::scene_bounds::BoundBoxes> boxes_kernel_;
+    KernelOf<kernels::scene_bounds::BoundInnerNodes> inner_kernel_;
 };
 
 } // namespace tandem

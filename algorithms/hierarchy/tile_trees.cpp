@@ -58,11 +58,9 @@ TileTrees::TileTrees(const Bodies& bodies, Slabs slabs, SelfPairs self, std::uin
     const std::uint64_t marked = slabs_ == Slabs::touched ? first_upper() : 1;
     const std::vector<std::uint32_t> marks((marked + tiles_a_turn - 1) / tiles_a_turn * tiles_a_turn);
     marks_ = uploaded(device_, bytes_of(marks), "marks of tiles");
-    const auto& source = kernel_source("algorithms/hierarchy/refit_tiles.cl");
-    leaf_kernel_ = device_.compile(source, "refit_leaf_tiles", defines(group_size));
-    upper_kernel_ = device_.compile(source, "refit_upper_tiles", defines(group_size));
-    if (slabs_ == Slabs::touched)
-        touched_kernel_ = device_.compile(source, "bound_touched_tiles", defines(group_size));
+    compile_kernel(device_, leaf_kernel_, defines(group_size));
+    compile_kernel(device_, upper_kernel_, defines(group_size));
+    if (slabs_ == Slabs::touched) compile_kernel(device_, touched_kernel_, defines(group_size));
 }
 
 Defines TileTrees::defines(std::uint32_t group_size) const {
@@ -258,27 +256,31 @@ void TileTrees::do_refit(const Frame& frame, bool all) {
         const Grid grid{all ? step.units : step.moving_units, group_size_};
         if (grid.groups == 0) continue;
         if (i == 0) {
-            const std::array<Argument, 17> arguments{leaves_,
-                                                     uppers_,
-                                                     first_upper(),
-                                                     roots_,
-                                                     volumes_,
-                                                     step.table,
-                                                     tile_table_,
-                                                     taking_part_,
-                                                     shapes_.starts(),
-                                                     shapes_.vertex_numbers(),
-                                                     shapes_.corners(),
-                                                     bodies_.row_table(),
-                                                     bodies_.poses(),
-                                                     bodies_.vertices(),
-                                                     bodies_.next_poses(),
-                                                     bodies_.next_vertices(),
-                                                     std::uint32_t{stores ? 1u : 0u}};
+            const kernels::refit_tiles::RefitLeafTiles arguments{.leaves = leaves_,
+                                                                 .uppers = uppers_,
+                                                                 .first_upper = first_upper(),
+                                                                 .roots = roots_,
+                                                                 .volumes = volumes_,
+                                                                 .units = step.table,
+                                                                 .tiles = tile_table_,
+                                                                 .taking_part = taking_part_,
+                                                                 .starts = shapes_.starts(),
+                                                                 .vertex_numbers = shapes_.vertex_numbers(),
+                                                                 .corners = shapes_.corners(),
+                                                                 .bodies = bodies_.row_table(),
+                                                                 .poses = bodies_.poses(),
+                                                                 .vertices = bodies_.vertices(),
+                                                                 .next_poses = bodies_.next_poses(),
+                                                                 .next_vertices = bodies_.next_vertices(),
+                                                                 .stored = std::uint32_t{stores ? 1u : 0u}};
             device_.launch(leaf_kernel_, grid, arguments);
         } else {
-            const std::array<Argument, 6> arguments{uppers_,  first_upper(), roots_,
-                                                    volumes_, step.table,    tile_table_};
+            const kernels::refit_tiles::RefitUpperTiles arguments{.uppers = uppers_,
+                                                                  .first_upper = first_upper(),
+                                                                  .roots = roots_,
+                                                                  .volumes = volumes_,
+                                                                  .units = step.table,
+                                                                  .tiles = tile_table_};
             device_.launch(upper_kernel_, grid, arguments);
         }
     }
@@ -288,19 +290,19 @@ void TileTrees::do_refit(const Frame& frame, bool all) {
 void TileTrees::bound_touched() const {
     const StageScope scope(device_, Stage::refit);
     const std::uint32_t tiles = std::max(1u, group_size_ / lanes) * tiles_a_turn; // of a group, or more
-    const std::array<Argument, 13> arguments{leaves_,
-                                             marks_,
-                                             first_upper(),
-                                             tile_table_,
-                                             taking_part_,
-                                             shapes_.starts(),
-                                             shapes_.vertex_numbers(),
-                                             shapes_.corners(),
-                                             bodies_.row_table(),
-                                             bodies_.poses(),
-                                             bodies_.vertices(),
-                                             bodies_.next_poses(),
-                                             bodies_.next_vertices()};
+    const kernels::refit_tiles::BoundTouchedTiles arguments{.leaves = leaves_,
+                                                            .marks = marks_,
+                                                            .tile_count = first_upper(),
+                                                            .tiles = tile_table_,
+                                                            .taking_part = taking_part_,
+                                                            .starts = shapes_.starts(),
+                                                            .vertex_numbers = shapes_.vertex_numbers(),
+                                                            .corners = shapes_.corners(),
+                                                            .bodies = bodies_.row_table(),
+                                                            .poses = bodies_.poses(),
+                                                            .vertices = bodies_.vertices(),
+                                                            .next_poses = bodies_.next_poses(),
+                                                            .next_vertices = bodies_.next_vertices()};
     device_.launch(touched_kernel_, {(first_upper() + tiles - 1) / tiles, group_size_}, arguments);
 }
 

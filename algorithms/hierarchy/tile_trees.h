@@ -3,6 +3,7 @@
 
 #include "algorithms/bodies/bodies.h"
 #include "algorithms/hierarchy/hierarchy.h"
+#include "algorithms/hierarchy/refit_tiles.cl.h"
 #include "algorithms/hierarchy/tile_incidence.h"
 #include "algorithms/hierarchy/tile_shapes.h"
 
@@ -123,7 +124,9 @@ private:
     bool fresh_ = true;                               ///< whether the next refit includes fixed bodies
     std::vector<std::vector<std::uint32_t>> skipped_; ///< by body: tetrahedra that the last frame skips
     Buffer leaves_, uppers_, roots_, volumes_, tile_table_, tops_, taking_part_, marks_;
-    Kernel leaf_kernel_, upper_kernel_, touched_kernel_;
+    KernelOf<kernels::refit_tiles::RefitLeafTiles> leaf_kernel_;
+    KernelOf<kernels::refit_tiles::RefitUpperTiles> upper_kernel_;
+    KernelOf<kernels::refit_tiles::BoundTouchedTiles> touched_kernel_; ///< null unless slabs=touched
 };
 
 } // namespace tandem

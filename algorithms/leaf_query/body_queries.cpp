@@ -17,8 +17,7 @@ BodyQueries::BodyQueries(const ChunkTrees& trees, LaunchShape shape, bool has_se
 void BodyQueries::do_compile(const WalkBuild& build) {
     auto defines = trees_.defines(shape_.group_size);
     build.add_to(defines);
-    kernel_ = trees_.bodies().device().compile(kernel_source("algorithms/leaf_query/body_query.cl"),
-                                               "query_leaves", defines);
+    compile_kernel(trees_.bodies().device(), kernel_, defines);
 }
 
 void BodyQueries::do_launch(const WalkTask& task) {
@@ -26,17 +25,17 @@ void BodyQueries::do_launch(const WalkTask& task) {
     const StageScope scope(bodies.device(), Stage::traverse);
     const auto turns = std::uint64_t{task.most_pairs()} * blocks_;
     const Grid grid{std::min<std::uint64_t>(shape_.groups, turns), shape_.group_size};
-    const std::array<Argument, 11> arguments{trees_.nodes(),
-                                             trees_.tree_table(),
-                                             bodies.row_table(),
-                                             bodies.ids(),
-                                             bodies.topology(),
-                                             task.body_pairs,
-                                             task.pair_capacity,
-                                             blocks_,
-                                             task.answer.pairs.buffer(),
-                                             task.answer.pairs.capacity(),
-                                             task.status.buffer()};
+    const kernels::body_query::QueryLeaves arguments{.nodes = trees_.nodes(),
+                                                     .trees = trees_.tree_table(),
+                                                     .bodies = bodies.row_table(),
+                                                     .ids = bodies.ids(),
+                                                     .tetrahedra = bodies.topology(),
+                                                     .pairs = task.body_pairs,
+                                                     .pair_capacity = task.pair_capacity,
+                                                     .blocks = blocks_,
+                                                     .found = task.answer.pairs.buffer(),
+                                                     .capacity = task.answer.pairs.capacity(),
+                                                     .status = task.status.buffer()};
     bodies.device().launch(kernel_, grid, arguments);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "algorithms/hierarchy/chunk_trees.h"
+#include "algorithms/leaf_query/body_query.cl.h"
 #include "algorithms/walker.h"
 
 namespace tandem {
@@ -22,7 +23,7 @@ private:
     const ChunkTrees& trees_;
     LaunchShape shape_;
     std::uint32_t blocks_; ///< turns of a work-group for the body pair with the most queries
-    Kernel kernel_;
+    KernelOf<kernels::body_query::QueryLeaves> kernel_;
 };
 
 } // namespace tandem

@@ -18,8 +18,7 @@ void SceneQueries::do_compile(const WalkBuild& build) {
     auto defines = tree_.defines(shape_.group_size);
     build.add_to(defines);
     if (has_filters(tree_.bodies().scene())) defines["FILTERED"] = "1";
-    kernel_ = tree_.bodies().device().compile(kernel_source("algorithms/leaf_query/scene_query.cl"),
-                                              "query_scene", defines);
+    compile_kernel(tree_.bodies().device(), kernel_, defines);
 }
 
 void SceneQueries::do_launch(const WalkTask& task) {
@@ -28,22 +27,22 @@ void SceneQueries::do_launch(const WalkTask& task) {
     if (!task.complete) partners_.upload(task.on_host, bodies.count());
     const StageScope scope(bodies.device(), Stage::traverse);
     const auto groups = (std::uint64_t{count} + shape_.group_size - 1) / shape_.group_size;
-    const std::array<Argument, 16> arguments{tree_.leaf_bounds(),
-                                             tree_.leaves(),
-                                             tree_.inner(),
-                                             tree_.inner_bounds(),
-                                             count,
-                                             filters_,
-                                             partners_.table(),
-                                             std::uint32_t{task.complete ? 0u : 1u},
-                                             tree_.state(),
-                                             tree_.tree_table(),
-                                             bodies.row_table(),
-                                             bodies.ids(),
-                                             bodies.topology(),
-                                             task.answer.pairs.buffer(),
-                                             task.answer.pairs.capacity(),
-                                             task.status.buffer()};
+    const kernels::scene_query::QueryScene arguments{.leaf_bounds = tree_.leaf_bounds(),
+                                                     .leaves = tree_.leaves(),
+                                                     .inner = tree_.inner(),
+                                                     .inner_bounds = tree_.inner_bounds(),
+                                                     .count = count,
+                                                     .filters = filters_,
+                                                     .partners = partners_.table(),
+                                                     .has_lists = std::uint32_t{task.complete ? 0u : 1u},
+                                                     .state = tree_.state(),
+                                                     .trees = tree_.tree_table(),
+                                                     .bodies = bodies.row_table(),
+                                                     .ids = bodies.ids(),
+                                                     .tetrahedra = bodies.topology(),
+                                                     .found = task.answer.pairs.buffer(),
+                                                     .capacity = task.answer.pairs.capacity(),
+                                                     .status = task.status.buffer()};
     bodies.device().launch(kernel_, {std::min<std::uint64_t>(shape_.groups, groups), shape_.group_size},
                            arguments);
 }

@@ -3,6 +3,7 @@
 
 #include "algorithms/hierarchy/scene_tree.h"
 #include "algorithms/leaf_query/partner_lists.h"
+#include "algorithms/leaf_query/scene_query.cl.h"
 #include "algorithms/walker.h"
 
 namespace tandem {
@@ -25,7 +26,7 @@ private:
     LaunchShape shape_;
     Buffer filters_;
     PartnerLists partners_;
-    Kernel kernel_;
+    KernelOf<kernels::scene_query::QueryScene> kernel_;
 };
 
 } // namespace tandem

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The first of three kernels from candidate pairs to contacts: leaves out pairs without the boundary faces
 // that the rule needs, and decides the others by certificates, at little cost.
+// Host variants: PRECISION
 #include "backends/portable.h"
 
 #include "algorithms/narrow_phase/trial.clh"

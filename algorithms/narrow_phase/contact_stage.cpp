@@ -36,21 +36,18 @@ ContactStage::ContactStage(const Bodies& bodies, const ContactSettings& settings
     defines["BOUNDARY_NEEDED"] = std::to_string(boundaries_needed(settings.rule));
     if (has_verdicts(settings.decision)) decision_ = std::make_unique<DecisionStage>(bodies, settings, shape);
     const auto decided = [&](bool by_verdicts) { return decided_define(settings.decision, by_verdicts); };
-    const auto& last = kernel_source("algorithms/narrow_phase/contacts.cl");
     if (launches == Launches::apart) {
         defines["DECIDED"] = decided(decision_ && !decides_open());
-        certify_ =
-            device.compile(kernel_source("algorithms/narrow_phase/certify.cl"), "certify_pairs", defines);
+        compile_kernel(device, certify_, defines);
         defines["DECIDED"] = decided(decision_ != nullptr);
-        separate_ =
-            device.compile(kernel_source("algorithms/narrow_phase/separate.cl"), "separate_pairs", defines);
+        compile_kernel(device, separate_, defines);
         defines["AT_ONCE"] = "0";
-        generate_ = device.compile(last, "generate_contacts", defines);
+        compile_kernel(device, generate_, defines);
     }
     if (launches == Launches::at_once || device.info().is_gpu) {
         defines["DECIDED"] = decided(decision_ != nullptr);
         defines["AT_ONCE"] = "1";
-        at_once_ = device.compile(last, "generate_contacts", defines);
+        compile_kernel(device, at_once_, defines);
     }
     nothing_ = device.allocate(4, "nothing");
     waiting_ = GrowableBuffer(device, {{"pairs to be tested", 4}, {"pairs that meet", 4}}, 0);
@@ -82,52 +79,53 @@ void ContactStage::find_meeting(const AnswerBuffers& answer, std::uint32_t first
     auto& device = bodies_.device();
     const auto shape = apart_shape();
     const Grid grid{shape.groups, shape.group_size};
-    const std::array<Argument, 12> certify{answer.pairs.buffer(),
-                                           first,
-                                           end,
-                                           bodies_.owners(),
-                                           bodies_.poses(),
-                                           bodies_.tetrahedra(),
-                                           bodies_.vertices(),
-                                           bodies_.boundary(),
-                                           verdicts(),
-                                           waiting_.buffer(LIST_OPEN),
-                                           waiting_.buffer(LIST_MEETING),
-                                           status.buffer()};
+    const kernels::certify::CertifyPairs certify{.found = answer.pairs.buffer(),
+                                                 .first = first,
+                                                 .pair_capacity = end,
+                                                 .owners = bodies_.owners(),
+                                                 .poses = bodies_.poses(),
+                                                 .tetrahedra = bodies_.tetrahedra(),
+                                                 .vertices = bodies_.vertices(),
+                                                 .boundary = bodies_.boundary(),
+                                                 .verdicts = verdicts(),
+                                                 .open = waiting_.buffer(LIST_OPEN),
+                                                 .meeting = waiting_.buffer(LIST_MEETING),
+                                                 .status = status.buffer()};
     device.launch(certify_, grid, certify);
     if (decides_open())
         decision_->launch_open(answer.pairs.buffer(), first, end, waiting_.buffer(LIST_OPEN), status);
-    const std::array<Argument, 10> separate{answer.pairs.buffer(),
-                                            first,
-                                            bodies_.owners(),
-                                            bodies_.poses(),
-                                            bodies_.tetrahedra(),
-                                            bodies_.vertices(),
-                                            verdicts(),
-                                            waiting_.buffer(LIST_OPEN),
-                                            waiting_.buffer(LIST_MEETING),
-                                            status.buffer()};
+    const kernels::separate::SeparatePairs separate{.found = answer.pairs.buffer(),
+                                                    .first = first,
+                                                    .owners = bodies_.owners(),
+                                                    .poses = bodies_.poses(),
+                                                    .tetrahedra = bodies_.tetrahedra(),
+                                                    .vertices = bodies_.vertices(),
+                                                    .verdicts = verdicts(),
+                                                    .open = waiting_.buffer(LIST_OPEN),
+                                                    .meeting = waiting_.buffer(LIST_MEETING),
+                                                    .status = status.buffer()};
     device.launch(separate_, grid, separate);
 }
 
 /// Makes contacts of the listed pairs that meet, or of pairs first..end - 1.
-void ContactStage::generate(const Kernel& kernel, LaunchShape shape, const AnswerBuffers& answer,
-                            std::uint32_t first, std::uint32_t end, const Status& status) {
-    const std::array<Argument, 14> arguments{answer.pairs.buffer(),
-                                             first,
-                                             end,
-                                             bodies_.owners(),
-                                             bodies_.poses(),
-                                             bodies_.tetrahedra(),
-                                             bodies_.vertices(),
-                                             bodies_.boundary(),
-                                             verdicts(),
-                                             waiting_.capacity() > 0 ? waiting_.buffer(LIST_MEETING)
-                                                                     : nothing_,
-                                             answer.contacts.buffer(contact_ids),
-                                             answer.contacts.buffer(contact_values),
-                                             answer.contacts.capacity(),
-                                             status.buffer()};
+void ContactStage::generate(const KernelOf<kernels::contacts::GenerateContacts>& kernel, LaunchShape shape,
+                            const AnswerBuffers& answer, std::uint32_t first, std::uint32_t end,
+                            const Status& status) {
+    const kernels::contacts::GenerateContacts arguments{
+        .found = answer.pairs.buffer(),
+        .first = first,
+        .pair_capacity = end,
+        .owners = bodies_.owners(),
+        .poses = bodies_.poses(),
+        .tetrahedra = bodies_.tetrahedra(),
+        .vertices = bodies_.vertices(),
+        .boundary = bodies_.boundary(),
+        .verdicts = verdicts(),
+        .meeting = waiting_.capacity() > 0 ? waiting_.buffer(LIST_MEETING) : nothing_,
+        .contact_ids = answer.contacts.buffer(contact_ids),
+        .contact_values = answer.contacts.buffer(contact_values),
+        .contact_capacity = answer.contacts.capacity(),
+        .status = status.buffer()};
     bodies_.device().launch(kernel, {shape.groups, shape.group_size}, arguments);
 }
 

@@ -4,8 +4,11 @@
 #include "algorithms/answer/answers.h"
 #include "algorithms/answer/growable_buffer.h"
 #include "algorithms/answer/status.h"
+#include "algorithms/narrow_phase/certify.cl.h"
+#include "algorithms/narrow_phase/contacts.cl.h"
 #include "algorithms/narrow_phase/decision_stage.h"
 #include "algorithms/expected_groups.h"
+#include "algorithms/narrow_phase/separate.cl.h"
 
 #include <memory>
 #include <optional>
@@ -35,17 +38,20 @@ private:
     LaunchShape apart_shape() const;
     void find_meeting(const AnswerBuffers& answer, std::uint32_t first, std::uint32_t end,
                       const Status& status);
-    void generate(const Kernel& kernel, LaunchShape shape, const AnswerBuffers& answer, std::uint32_t first,
-                  std::uint32_t end, const Status& status);
+    void generate(const KernelOf<kernels::contacts::GenerateContacts>& kernel, LaunchShape shape,
+                  const AnswerBuffers& answer, std::uint32_t first, std::uint32_t end, const Status& status);
     /// Whether only the pairs that certificates leave open need verdicts.
     bool decides_open() const { return decision_ && decision_->uses_certificates(); }
     const Buffer& verdicts() const { return decision_ ? decision_->verdicts() : nothing_; }
 
     const Bodies& bodies_;
-    LaunchShape shape_, few_shape_;        ///< for three launches, for one
-    ExpectedGroups groups_;                ///< for one launch
-    Kernel certify_, separate_, generate_; ///< null for Launches::at_once
-    Kernel at_once_;                       ///< null where it is never the better choice
+    LaunchShape shape_, few_shape_; ///< for three launches, for one
+    ExpectedGroups groups_;         ///< for one launch
+    // The first three are null for Launches::at_once.
+    KernelOf<kernels::certify::CertifyPairs> certify_;
+    KernelOf<kernels::separate::SeparatePairs> separate_;
+    KernelOf<kernels::contacts::GenerateContacts> generate_;
+    KernelOf<kernels::contacts::GenerateContacts> at_once_; ///< null where it is never the better choice
     std::optional<std::uint64_t> expected_;
     GrowableBuffer waiting_; ///< lists of waiting.clh, one column each: LIST_OPEN, LIST_MEETING
     Buffer nothing_;         ///< for kernels that do not read the argument

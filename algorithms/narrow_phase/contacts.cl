@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Contacts between candidate pairs: 2 words (pair, feature) and 8 reals (point, normal, depth, 0) each.
 // README.md describes the rules.
+// Host variants: PRECISION
 #include "backends/portable.h"
 
 #include "algorithms/narrow_phase/trial.clh"

@@ -42,18 +42,16 @@ DecisionStage::DecisionStage(const Bodies& bodies, const ContactSettings& settin
     if (uses_certificates()) columns.push_back({"pairs undecided by the filter", 4});
     decided_ = GrowableBuffer(device, std::move(columns), 0);
     if (uses_certificates()) {
-        const auto& filter = kernel_source("algorithms/narrow_phase/filter.cl");
-        filter_ = device.compile(filter, "filter_pairs", defines);
+        compile_kernel(device, filter_, defines);
         defines["OVER_OPEN"] = "1";
-        filter_open_ = device.compile(filter, "filter_pairs", defines);
+        compile_kernel(device, filter_open_, defines);
         defines.erase("OVER_OPEN");
     }
     defines["RECHECK_ALL"] = decision_ == DecisionPrecision::fp64 ? "1" : "0";
-    const auto& source = kernel_source("algorithms/narrow_phase/recheck.cl");
-    recheck_ = device.compile(source, "recheck_pairs", defines);
+    compile_kernel(device, recheck_, defines);
     if (decision_ != DecisionPrecision::exact) return;
-    gather_ = device.compile(source, "gather_corners", defines);
-    settle_ = device.compile(source, "settle_pairs", defines);
+    compile_kernel(device, gather_, defines);
+    compile_kernel(device, settle_, defines);
 }
 
 void DecisionStage::reserve(std::uint64_t pairs) { decided_.reserve(pairs); }
@@ -73,35 +71,39 @@ void DecisionStage::launch_open(const Buffer& found, std::uint64_t first, std::u
     recheck(found, first, end, status);
 }
 
-void DecisionStage::filter(const Kernel& kernel, const Buffer& found, std::uint64_t first, std::uint64_t end,
-                           const Buffer& open, const Status& status) {
-    decide(kernel, found, first, end, {open, decided_.buffer(verdict), decided_.buffer(undecided_by_filter)},
-           status);
+void DecisionStage::filter(const KernelOf<kernels::filter::FilterPairs>& kernel, const Buffer& found,
+                           std::uint64_t first, std::uint64_t end, const Buffer& open, const Status& status) {
+    bodies_.device().launch(kernel, {shape_.groups, shape_.group_size},
+                            {.found = found,
+                             .first = static_cast<std::uint32_t>(first),
+                             .pair_capacity = static_cast<std::uint32_t>(end),
+                             .owners = bodies_.owners(),
+                             .poses = bodies_.poses(),
+                             .tetrahedra = bodies_.tetrahedra(),
+                             .vertices = bodies_.vertices(),
+                             .boundary = bodies_.boundary(),
+                             .open = open,
+                             .verdicts = decided_.buffer(verdict),
+                             .undecided_by_filter = decided_.buffer(undecided_by_filter),
+                             .status = status.buffer()});
 }
 
 void DecisionStage::recheck(const Buffer& found, std::uint64_t first, std::uint64_t end,
                             const Status& status) {
-    decide(recheck_, found, first, end,
-           {decided_.buffer(verdict), filtered(), decided_.buffer(undecided_by_double)}, status);
+    bodies_.device().launch(recheck_, {shape_.groups, shape_.group_size},
+                            {.found = found,
+                             .first = static_cast<std::uint32_t>(first),
+                             .pair_capacity = static_cast<std::uint32_t>(end),
+                             .owners = bodies_.owners(),
+                             .poses = bodies_.poses(),
+                             .tetrahedra = bodies_.tetrahedra(),
+                             .vertices = bodies_.vertices(),
+                             .boundary = bodies_.boundary(),
+                             .verdicts = decided_.buffer(verdict),
+                             .undecided_by_filter = filtered(),
+                             .undecided_by_double = decided_.buffer(undecided_by_double),
+                             .status = status.buffer()});
     if (decision_ == DecisionPrecision::exact) settle(found, status);
-}
-
-/// Launches either kernel; `own` has the arguments in which they differ.
-void DecisionStage::decide(const Kernel& kernel, const Buffer& found, std::uint64_t first, std::uint64_t end,
-                           const std::array<Argument, 3>& own, const Status& status) {
-    const std::array<Argument, 12> arguments{found,
-                                             static_cast<std::uint32_t>(first),
-                                             static_cast<std::uint32_t>(end),
-                                             bodies_.owners(),
-                                             bodies_.poses(),
-                                             bodies_.tetrahedra(),
-                                             bodies_.vertices(),
-                                             bodies_.boundary(),
-                                             own[0],
-                                             own[1],
-                                             own[2],
-                                             status.buffer()};
-    bodies_.device().launch(kernel, {shape_.groups, shape_.group_size}, arguments);
 }
 
 /// Settles the pairs added since the status was last read or written; earlier ones are settled.
@@ -117,15 +119,15 @@ void DecisionStage::settle(const Buffer& found, const Status& status) {
     corners_ = {};
     corners_ = device.allocate(count * corner_reals * real, "corners of undecided pairs");
     const Grid grid{shape_.groups, shape_.group_size};
-    const std::array<Argument, 9> gather{found,
-                                         bodies_.owners(),
-                                         bodies_.poses(),
-                                         bodies_.tetrahedra(),
-                                         bodies_.vertices(),
-                                         decided_.buffer(undecided_by_double),
-                                         first,
-                                         count,
-                                         corners_};
+    const kernels::recheck::GatherCorners gather{.found = found,
+                                                 .owners = bodies_.owners(),
+                                                 .poses = bodies_.poses(),
+                                                 .tetrahedra = bodies_.tetrahedra(),
+                                                 .vertices = bodies_.vertices(),
+                                                 .undecided_by_double = decided_.buffer(undecided_by_double),
+                                                 .first = first,
+                                                 .count = count,
+                                                 .corners = corners_};
     device.launch(gather_, grid, gather);
     std::vector<std::byte> bytes(corners_.bytes());
     device.download(corners_, bytes);
@@ -137,8 +139,11 @@ void DecisionStage::settle(const Buffer& found, const Status& status) {
     answers_ = {};
     answers_ = device.allocate(count, "exact verdicts");
     device.upload(answers_, bytes_of(verdicts), 0, true);
-    const std::array<Argument, 5> settle{decided_.buffer(undecided_by_double), first, count, answers_,
-                                         decided_.buffer(verdict)};
+    const kernels::recheck::SettlePairs settle{.undecided_by_double = decided_.buffer(undecided_by_double),
+                                               .first = first,
+                                               .count = count,
+                                               .settled = answers_,
+                                               .verdicts = decided_.buffer(verdict)};
     device.launch(settle_, grid, settle);
 }
 

@@ -5,6 +5,8 @@
 #include "algorithms/answer/growable_buffer.h"
 #include "algorithms/answer/status.h"
 #include "algorithms/bodies/bodies.h"
+#include "algorithms/narrow_phase/filter.cl.h"
+#include "algorithms/narrow_phase/recheck.cl.h"
 #include "algorithms/traversal.h"
 
 namespace tandem {
@@ -33,11 +35,9 @@ public:
     const Buffer& verdicts() const { return decided_.buffer(verdict); }
 
 private:
-    void filter(const Kernel& kernel, const Buffer& found, std::uint64_t first, std::uint64_t end,
-                const Buffer& open, const Status& status);
+    void filter(const KernelOf<kernels::filter::FilterPairs>& kernel, const Buffer& found,
+                std::uint64_t first, std::uint64_t end, const Buffer& open, const Status& status);
     void recheck(const Buffer& found, std::uint64_t first, std::uint64_t end, const Status& status);
-    void decide(const Kernel& kernel, const Buffer& found, std::uint64_t first, std::uint64_t end,
-                const std::array<Argument, 3>& own, const Status& status);
     void settle(const Buffer& found, const Status& status);
 
     const Bodies& bodies_;
@@ -51,7 +51,10 @@ private:
     }
     GrowableBuffer decided_;   ///< by pair
     Buffer corners_, answers_; ///< data of pairs that the host decides; they live until their commands finish
-    Kernel filter_, filter_open_, recheck_, gather_, settle_;
+    KernelOf<kernels::filter::FilterPairs> filter_, filter_open_; ///< null without certificates
+    KernelOf<kernels::recheck::RecheckPairs> recheck_;
+    KernelOf<kernels::recheck::GatherCorners> gather_; ///< these two are null unless decision=exact
+    KernelOf<kernels::recheck::SettlePairs> settle_;
 };
 
 } // namespace tandem

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The digest of contacts; algorithms/answer/README.md describes that of pairs.
+// Host variants: PRECISION
 #include "backends/portable.h"
 
 #include "algorithms/answer/pairs.clh"

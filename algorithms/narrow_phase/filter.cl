@@ -2,6 +2,7 @@
 // The certified filter in the cell's precision: a verdict for every pair that has the boundary faces that the
 // contact rule needs, and a list of those it cannot decide. Each pair first gets a certificate, from this
 // kernel or, with OVER_OPEN, from certify_pairs before it.
+// Host variants: PRECISION
 #include "backends/portable.h"
 
 #define CERTAIN_IN_DOUBLE 0

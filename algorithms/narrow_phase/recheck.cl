@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The certified decision in double, for all pairs or for those that the filter cannot decide, and the
 // transfer of the remaining pairs to the host and back.
+// Host variants: PRECISION
 #include "backends/portable.h"
 
 #define CERTAIN_IN_DOUBLE 1

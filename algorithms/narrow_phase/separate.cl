@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The second of three kernels from candidate pairs to contacts: tests the pairs that certificates leave open.
+// Host variants: PRECISION
 #include "backends/portable.h"
 
 #include "algorithms/narrow_phase/trial.clh"

@@ -12,8 +12,7 @@ PublishedFrame::PublishedFrame(const Bodies& bodies, Hierarchy& hierarchy, Launc
       device_(bodies.device()),
       converter_(bodies, conversion, threads),
       group_size_(shape.group_size) {
-    transform_kernel_ = device_.compile(kernel_source("algorithms/published/transform.cl"),
-                                        "transform_vertices", row_defines(bodies.geometry(), group_size_));
+    compile_kernel(device_, transform_kernel_, row_defines(bodies.geometry(), group_size_));
     local_vertices_ =
         device_.allocate(bodies.vertex_total() * 4 * real_bytes(bodies.geometry()), "local vertices");
     vertex_bodies_ = device_.allocate(bodies.vertex_total() * 4, "vertex bodies");
@@ -45,8 +44,11 @@ void PublishedFrame::transform(Converted& converted) {
     {
         const StageScope scope(device_, Stage::transform);
         const auto count = static_cast<std::uint32_t>(bodies_.vertex_total());
-        const std::array<Argument, 5> arguments{local_vertices_, bodies_.vertices(), vertex_bodies_,
-                                                bodies_.poses(), count};
+        const kernels::transform::TransformVertices arguments{.vertices = local_vertices_,
+                                                              .world = bodies_.vertices(),
+                                                              .vertex_bodies = vertex_bodies_,
+                                                              .poses = bodies_.poses(),
+                                                              .vertex_count = count};
         const auto groups = (std::uint64_t{count} + group_size_ - 1) / group_size_;
         device_.launch(transform_kernel_, {groups, group_size_}, arguments);
     }

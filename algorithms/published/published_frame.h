@@ -3,6 +3,7 @@
 
 #include "algorithms/hierarchy/hierarchy.h"
 #include "algorithms/published/conversion.h"
+#include "algorithms/published/transform.cl.h"
 #include "algorithms/traversal.h"
 
 namespace tandem {
@@ -32,7 +33,7 @@ private:
     Device& device_;
     Converter converter_;
     std::uint32_t group_size_;
-    Kernel transform_kernel_;
+    KernelOf<kernels::transform::TransformVertices> transform_kernel_;
     Buffer local_vertices_, vertex_bodies_; ///< vertices before the transform, and their bodies
 };
 

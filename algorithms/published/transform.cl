@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // World vertices as in the paper's code: a separate stage, whose result the host reads back and uploads
 // again.
+// Host variants: PRECISION
 #include "backends/portable.h"
 #include "algorithms/bodies/body.clh"
 

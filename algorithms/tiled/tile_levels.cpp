@@ -37,8 +37,7 @@ Defines TileLevels::defines(const WalkBuild& build) const {
 }
 
 void TileLevels::compile(const Defines& defines) {
-    kernel_ = trees_.bodies().device().compile(kernel_source("algorithms/tiled/tiled.cl"), "walk_upper_tiles",
-                                               defines);
+    compile_kernel(trees_.bodies().device(), kernel_, defines);
 }
 
 Grid TileLevels::grid(std::uint32_t level) {
@@ -89,22 +88,23 @@ void TileLevels::report(const Status& status, std::map<std::string_view, std::ui
 }
 
 void TileLevels::launch_level(const WalkTask& task, std::uint32_t level) {
-    const std::array<Argument, 16> arguments{trees_.uppers(),
-                                             trees_.first_upper(),
-                                             trees_.roots(),
-                                             trees_.tile_table(),
-                                             trees_.tops(),
-                                             task.body_pairs,
-                                             task.pair_capacity,
-                                             trees_.begins(level),
-                                             level,
-                                             list(level).buffer(),
-                                             capacity(level),
-                                             list(level - 1).buffer(),
-                                             list(level - 1).capacity(),
-                                             trees_.marks(),
-                                             std::uint32_t{level == 1 && trees_.has_touched() ? 1u : 0u},
-                                             task.status.buffer()};
+    const kernels::tiled::WalkUpperTiles arguments{
+        .uppers = trees_.uppers(),
+        .first_upper = trees_.first_upper(),
+        .roots = trees_.roots(),
+        .tiles = trees_.tile_table(),
+        .tops = trees_.tops(),
+        .pairs = task.body_pairs,
+        .pair_capacity = task.pair_capacity,
+        .begins = trees_.begins(level),
+        .level = level,
+        .list = list(level).buffer(),
+        .capacity = capacity(level),
+        .below = list(level - 1).buffer(),
+        .below_capacity = list(level - 1).capacity(),
+        .marks = trees_.marks(),
+        .marked = std::uint32_t{level == 1 && trees_.has_touched() ? 1u : 0u},
+        .status = task.status.buffer()};
     trees_.bodies().device().launch(kernel_, grid(level), arguments);
 }
 

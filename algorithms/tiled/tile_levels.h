@@ -5,6 +5,7 @@
 #include "algorithms/expected_groups.h"
 #include "algorithms/hierarchy/tile_trees.h"
 #include "algorithms/stages.h"
+#include "algorithms/tiled/tiled.cl.h"
 #include "algorithms/walker.h"
 
 #include <optional>
@@ -63,7 +64,7 @@ private:
         ExpectedGroups groups;
     };
     std::vector<Expected> expected_;
-    Kernel kernel_;
+    KernelOf<kernels::tiled::WalkUpperTiles> kernel_;
 };
 
 } // namespace tandem

@@ -8,8 +8,7 @@ namespace tandem {
 void TiledWalker::do_compile(const WalkBuild& build) {
     const auto defines = levels_.defines(build);
     levels_.compile(defines);
-    leaf_kernel_ = trees_.bodies().device().compile(kernel_source("algorithms/tiled/tiled.cl"),
-                                                    "walk_leaf_tiles", defines);
+    compile_kernel(trees_.bodies().device(), leaf_kernel_, defines);
 }
 
 bool TiledWalker::do_grow(const Status& status) {
@@ -26,28 +25,28 @@ void TiledWalker::launch_leaves(const WalkTask& task) {
     const auto& bodies = trees_.bodies();
     const auto& shapes = trees_.shapes();
     const auto& incidence = trees_.incidence();
-    const std::array<Argument, 22> arguments{trees_.leaves(),
-                                             trees_.roots(),
-                                             trees_.tile_table(),
-                                             trees_.tops(),
-                                             task.body_pairs,
-                                             task.pair_capacity,
-                                             trees_.begins(0),
-                                             levels_.list(0).buffer(),
-                                             levels_.capacity(0),
-                                             shapes.starts(),
-                                             shapes.vertex_numbers(),
-                                             shapes.corners(),
-                                             bodies.row_table(),
-                                             bodies.poses(),
-                                             bodies.vertices(),
-                                             bodies.ids(),
-                                             incidence.starts(),
-                                             incidence.partners(),
-                                             incidence.masks(),
-                                             task.answer.pairs.buffer(),
-                                             task.answer.pairs.capacity(),
-                                             task.status.buffer()};
+    const kernels::tiled::WalkLeafTiles arguments{.leaves = trees_.leaves(),
+                                                  .roots = trees_.roots(),
+                                                  .tiles = trees_.tile_table(),
+                                                  .tops = trees_.tops(),
+                                                  .pairs = task.body_pairs,
+                                                  .pair_capacity = task.pair_capacity,
+                                                  .begins = trees_.begins(0),
+                                                  .list = levels_.list(0).buffer(),
+                                                  .list_capacity = levels_.capacity(0),
+                                                  .starts = shapes.starts(),
+                                                  .vertex_numbers = shapes.vertex_numbers(),
+                                                  .corners = shapes.corners(),
+                                                  .bodies = bodies.row_table(),
+                                                  .poses = bodies.poses(),
+                                                  .vertices = bodies.vertices(),
+                                                  .ids = bodies.ids(),
+                                                  .incident_starts = incidence.starts(),
+                                                  .incident_partners = incidence.partners(),
+                                                  .incident_masks = incidence.masks(),
+                                                  .found = task.answer.pairs.buffer(),
+                                                  .capacity = task.answer.pairs.capacity(),
+                                                  .status = task.status.buffer()};
     bodies.device().launch(leaf_kernel_, levels_.grid(0), arguments);
 }
 

@@ -23,7 +23,7 @@ private:
 
     TileTrees& trees_;
     TileLevels levels_;
-    Kernel leaf_kernel_;
+    KernelOf<kernels::tiled::WalkLeafTiles> leaf_kernel_;
 };
 
 } // namespace tandem

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/profile/ceilings.h"
 
+#include "algorithms/bounds/ceilings.cl.h"
 #include "algorithms/bounds/geometry.h"
 #include "algorithms/sources.h"
 #include "harness/record/record.h"
@@ -19,7 +20,6 @@ using Clock = std::chrono::steady_clock;
 using Samples = std::vector<double>;
 
 constexpr int repeats = 9;
-constexpr std::string_view file = "algorithms/bounds/ceilings.cl";
 
 /// The measurements on one device, with its buffer sizes. Large buffers exceed every cache, small ones fit
 /// the second-level cache of every GPU.
@@ -35,6 +35,8 @@ public:
     Ceilings run();
 
 private:
+    using Nothing = KernelOf<kernels::ceilings::DoNothing>;
+
     /// Rounds down to whole rounds of the grid, in which each work-item moves 8 words of 8 bytes.
     std::size_t fitted(std::size_t bytes) const {
         const std::size_t round = std::size_t{groups_} * group_ * 64;
@@ -43,17 +45,21 @@ private:
                * round;
     }
     /// Only the overlap test depends on k.
-    Kernel kernel(std::string_view entry, int k = 18) {
-        return device_.compile(kernel_source(file), entry, geometry_defines({.k = k}, group_));
+    template<class Arguments>
+    KernelOf<Arguments> compiled(int k = 18) {
+        KernelOf<Arguments> kernel;
+        compile_kernel(device_, kernel, geometry_defines({.k = k}, group_));
+        return kernel;
     }
-    void launch(const Kernel& kernel, std::span<const Argument> arguments) {
+    template<class Arguments>
+    void launch(const KernelOf<Arguments>& kernel, const std::type_identity_t<Arguments>& arguments) {
         device_.launch(kernel, {groups_, group_}, arguments);
     }
     template<class Work>
     Samples per_second(double amount, const Work& work);
     template<class Work>
     Samples seconds(double count, const Work& work);
-    Samples timed_launch(const Kernel& nothing, const Buffer& buffer);
+    Samples timed_launch(const Nothing& nothing, const Buffer& buffer);
     Samples overlaps(int k);
     Samples upload_pinned(const Buffer& buffer, std::span<const std::byte> bytes);
 
@@ -96,20 +102,20 @@ Samples Bench::per_second(double amount, const Work& work) {
     return samples;
 }
 
-/// Overlap tests a second. Every work-item tests boxes in its registers, `turns` times in a row, so that
+/// Overlap tests a second. Every work-item tests boxes in its registers, `rounds` times in a row, so that
 /// memory does not limit the rate. A processor does a twentieth of the turns, to take about the same time.
 Samples Bench::overlaps(int k) {
-    constexpr std::uint32_t rounds = 2000;
+    constexpr std::uint32_t most = 2000;
     const auto nodes = device_.allocate(static_cast<std::size_t>(k) * 8, "nodes");
     const auto counts = device_.allocate(std::size_t{groups_} * group_ * 4, "counts");
     std::vector<float> slabs(static_cast<std::size_t>(k) * 2, 0.0f);
     device_.upload(nodes, bytes_of(slabs));
-    const std::uint32_t turns = device_.info().is_gpu ? rounds : rounds / 20;
-    const std::array<Argument, 4> arguments{nodes, counts, turns, 1u};
+    const std::uint32_t rounds = device_.info().is_gpu ? most : most / 20;
     const int axes = k / 2;
-    const auto tests = static_cast<double>(groups_) * group_ * turns * axes;
-    const auto entry = kernel("test_overlaps", k);
-    return per_second(tests, [&] { launch(entry, arguments); });
+    const auto tests = static_cast<double>(groups_) * group_ * rounds * axes;
+    const auto kernel = compiled<kernels::ceilings::TestOverlaps>(k);
+    return per_second(
+        tests, [&] { launch(kernel, {.nodes = nodes, .counts = counts, .rounds = rounds, .turns = 1u}); });
 }
 
 /// Uses device times, because the host only copies to page-locked memory and does not wait for the transfer.
@@ -119,9 +125,8 @@ Samples Bench::upload_pinned(const Buffer& buffer, std::span<const std::byte> by
 }
 
 /// Device seconds of an empty launch that is timed alone: the time of any kernel is at least as long.
-Samples Bench::timed_launch(const Kernel& nothing, const Buffer& buffer) {
-    const std::array<Argument, 1> one{buffer};
-    auto samples = per_second(1, [&] { device_.launch(nothing, {1, group_}, one); });
+Samples Bench::timed_launch(const Nothing& nothing, const Buffer& buffer) {
+    auto samples = per_second(1, [&] { device_.launch(nothing, {1, group_}, {.out = buffer}); });
     for (auto& s : samples) s = 1 / s;
     return samples;
 }
@@ -133,14 +138,15 @@ Ceilings Bench::run() {
     const auto to = device_.allocate(large_, "target");
     const auto words = static_cast<std::uint64_t>(large_ / 8);
     device_.clear(from, large_);
-    const auto copy = kernel("copy_words");
-    const auto read = kernel("read_words");
-    const std::array<Argument, 3> all{from, to, words};
-    c.copy = per_second(2.0 * static_cast<double>(large_), [&] { launch(copy, all); });
-    const std::array<Argument, 4> once{from, to, words, 1u};
+    const auto copy = compiled<kernels::ceilings::CopyWords>();
+    const auto read = compiled<kernels::ceilings::ReadWords>();
+    c.copy = per_second(2.0 * static_cast<double>(large_),
+                        [&] { launch(copy, {.from = from, .to = to, .words = words}); });
+    const kernels::ceilings::ReadWords once{.from = from, .out = to, .words = words, .rounds = 1u};
     c.read = per_second(static_cast<double>(large_), [&] { launch(read, once); });
     constexpr std::uint32_t rounds = 64;
-    const std::array<Argument, 4> cached{from, to, static_cast<std::uint64_t>(small_ / 8), rounds};
+    const kernels::ceilings::ReadWords cached{
+        .from = from, .out = to, .words = std::uint64_t{small_ / 8}, .rounds = rounds};
     c.cache_read = per_second(static_cast<double>(small_) * rounds, [&] { launch(read, cached); });
 
     std::vector<std::byte> bytes(std::min<std::size_t>(large_, std::size_t{64} << 20), std::byte{1});
@@ -153,9 +159,8 @@ Ceilings Bench::run() {
     c.upload_pageable = rate(seconds(1, [&] { device_.upload(to, bytes, 0, true); }));
     c.download = rate(seconds(1, [&] { device_.download(to, bytes); }));
 
-    const auto nothing = kernel("do_nothing");
-    const std::array<Argument, 1> one{to};
-    const auto submit = [&] { device_.launch(nothing, {1, group_}, one); };
+    const auto nothing = compiled<kernels::ceilings::DoNothing>();
+    const auto submit = [&] { device_.launch(nothing, {1, group_}, {.out = to}); };
     c.launch = seconds(1, submit);
     constexpr int many = 1000;
     c.launch_queued = seconds(many, [&] {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // One binary tree per body with stored children, and the simplest traversal: every tetrahedron of body a
 // queries body b's tree.
+// Host variants: AXES K PRECISION
 #include "backends/portable.h"
 #include "algorithms/answer/emit.clh"
 #include "algorithms/bounds/leaf.clh"

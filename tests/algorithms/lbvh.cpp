@@ -5,6 +5,7 @@
 #include "algorithms/pipeline.h"
 #include "algorithms/sources.h"
 #include "backends/upload.h"
+#include "tests/algorithms/lbvh.cl.h"
 
 #include <algorithm>
 #include <limits>
@@ -21,8 +22,6 @@ constexpr std::array all_counters{counters::bvtt_nodes, counters::seeds, leaf_hi
 
 const std::vector<Preset> all_presets{
     {"resident", "everything resident, body pairs included", {parameters::broad(Broad::device)}}};
-
-const KernelSource& source() { return kernel_source("tests/algorithms/lbvh.cl"); }
 
 /// Nodes of a mesh's trees, as lbvh.cl numbers them.
 struct Topology {
@@ -94,7 +93,7 @@ private:
     std::vector<Tree> trees_;
     std::vector<std::vector<std::uint32_t>> skipped_; ///< skipped tetrahedra of the last frame
     Buffer nodes_, volumes_, tree_table_, children_, depths_, skipped_flags_, body_order_;
-    Kernel kernel_;
+    KernelOf<kernels::lbvh::RefitTrees> kernel_;
 };
 
 StoredTrees::StoredTrees(const Bodies& bodies, std::uint32_t group_size)
@@ -107,7 +106,7 @@ StoredTrees::StoredTrees(const Bodies& bodies, std::uint32_t group_size)
     skipped_flags_ = device_.allocate(slots_ * 4, "skipped tetrahedra");
     const StageScope scope(device_, Stage::write);
     device_.clear(skipped_flags_, slots_ * 4);
-    kernel_ = device_.compile(source(), "refit_trees", geometry_defines(bodies.geometry(), group_size));
+    compile_kernel(device_, kernel_, geometry_defines(bodies.geometry(), group_size));
 }
 
 /// Uploads the rows of children and depths of all meshes. Returns where the rows of each mesh start.
@@ -180,19 +179,19 @@ void StoredTrees::do_refit(const Frame& frame, bool all) {
     const auto bodies = all || needs_full_refit_ ? bodies_.count() : moving_bodies_;
     if (bodies == 0) return;
     const StageScope scope(device_, Stage::refit);
-    const std::array<Argument, 13> arguments{nodes_,
-                                             volumes_,
-                                             tree_table_,
-                                             children_,
-                                             depths_,
-                                             skipped_flags_,
-                                             body_order_,
-                                             bodies_.row_table(),
-                                             bodies_.poses(),
-                                             bodies_.tetrahedra(),
-                                             bodies_.vertices(),
-                                             bodies_.next_poses(),
-                                             bodies_.next_vertices()};
+    const kernels::lbvh::RefitTrees arguments{.nodes = nodes_,
+                                              .volumes = volumes_,
+                                              .trees = tree_table_,
+                                              .children = children_,
+                                              .depths = depths_,
+                                              .skipped = skipped_flags_,
+                                              .chosen = body_order_,
+                                              .bodies = bodies_.row_table(),
+                                              .poses = bodies_.poses(),
+                                              .tetrahedra = bodies_.tetrahedra(),
+                                              .vertices = bodies_.vertices(),
+                                              .next_poses = bodies_.next_poses(),
+                                              .next_vertices = bodies_.next_vertices()};
     device_.launch(kernel_, {bodies, group_size_}, arguments);
     needs_full_refit_ = false;
 }
@@ -210,31 +209,31 @@ private:
 
     const StoredTrees& trees_;
     LaunchShape shape_;
-    Kernel kernel_;
+    KernelOf<kernels::lbvh::QueryLeaves> kernel_;
 };
 
 void LeafQueries::do_compile(const WalkBuild& build) {
     auto defines = geometry_defines(trees_.bodies().geometry(), shape_.group_size);
     build.add_to(defines);
-    kernel_ = trees_.bodies().device().compile(source(), "query_leaves", defines);
+    compile_kernel(trees_.bodies().device(), kernel_, defines);
 }
 
 void LeafQueries::do_launch(const WalkTask& task) {
     const auto& bodies = trees_.bodies();
     const StageScope scope(bodies.device(), Stage::traverse);
     const auto blocks = (trees_.most_items() + shape_.group_size - 1) / shape_.group_size;
-    const std::array<Argument, 12> arguments{trees_.nodes(),
-                                             trees_.tree_table(),
-                                             trees_.children(),
-                                             bodies.row_table(),
-                                             bodies.ids(),
-                                             bodies.tetrahedra(),
-                                             task.body_pairs,
-                                             task.pair_capacity,
-                                             blocks,
-                                             task.answer.pairs.buffer(),
-                                             task.answer.pairs.capacity(),
-                                             task.status.buffer()};
+    const kernels::lbvh::QueryLeaves arguments{.nodes = trees_.nodes(),
+                                               .trees = trees_.tree_table(),
+                                               .children = trees_.children(),
+                                               .bodies = bodies.row_table(),
+                                               .ids = bodies.ids(),
+                                               .tetrahedra = bodies.tetrahedra(),
+                                               .pairs = task.body_pairs,
+                                               .pair_capacity = task.pair_capacity,
+                                               .blocks = blocks,
+                                               .found = task.answer.pairs.buffer(),
+                                               .capacity = task.answer.pairs.capacity(),
+                                               .status = task.status.buffer()};
     bodies.device().launch(kernel_, {shape_.groups, shape_.group_size}, arguments);
 }
 

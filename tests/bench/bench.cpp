@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Microbenchmarks of the stages, on every available device. The host times iterations around one wait.
 // Compare times within one run only; times on a processor do not predict those on a GPU.
+#include "algorithms/bounds/ceilings.cl.h"
 #include "algorithms/broad_phase/broad.h"
 #include "algorithms/broad_phase/broad_stage.h"
 #include "algorithms/narrow_phase/reference.h"
@@ -46,11 +47,11 @@ void transfer(benchmark::State& state, Device& device, bool up) {
 
 /// Launches an empty kernel and waits for it.
 void launch_latency(benchmark::State& state, Device& device) {
-    const auto kernel = device.compile(kernel_source("algorithms/bounds/ceilings.cl"), "do_nothing",
-                                       geometry_defines({}, group_size(device)));
+    KernelOf<kernels::ceilings::DoNothing> kernel;
+    compile_kernel(device, kernel, geometry_defines({}, group_size(device)));
     const auto empty = device.allocate(64, "empty");
     const StageScope scope(device, Stage::traverse);
-    const std::array<Argument, 1> arguments{empty};
+    const kernels::ceilings::DoNothing arguments{.out = empty};
     device.launch(kernel, {1, group_size(device)}, arguments);
     device.finish();
     for ([[maybe_unused]] auto _ : state) {
