@@ -60,6 +60,17 @@ def method_of(record):
     return "sah" if settings["builder"] == "sah" else "paper" if settings["schedule"] == "item" else "chunked"
 
 
+def origin_of(record):
+    """Where a record is from: "NVIDIA H200, commit 8c7a169 of 2026-11-23"."""
+    devices = " and ".join(sorted({device["name"] for device in record["devices"]}))
+    made = record["environment"]
+    return f"{devices}, commit {(made['commit'] or 'unknown')[:7]} of {(made['date'] or 'unknown')[:10]}"
+
+
+def origins(cells):
+    return " and ".join(sorted({cell.origin for cell in cells.values()}))
+
+
 class Cell:
     """Milliseconds per frame by round: of samples, and the device time of refit and walk from replays that
     time every command."""
@@ -72,7 +83,7 @@ class Cell:
         }
         walks = [record["stages"][s]["device_ns"]["samples"] for s in WALK if s in record["stages"]]
         self.walk = {n: cell_rows.milliseconds(sum(own), frames) for n, own in enumerate(zip(*walks))}
-        self.devices = {device["name"] for device in record["devices"]}
+        self.origin = origin_of(record)
         self.key, self.session = record["key"], record.get("session") or ""
 
 
@@ -193,7 +204,8 @@ def first_lines(cells, answers):
     return (
         "- **Fastest: the tiled walk** (`tiled`, tiles of 32 boxes against 32).\n"
         f"  A whole frame with contacts is {span(next_best)} times as fast\n"
-        "  as with the better of `chunked` and gProximity (one NVIDIA H200, k = 18, everything on the device).\n"
+        "  as with the better of `chunked` and gProximity (k = 18, everything on the device).\n"
+        f"  Measured on one {origins(cells)}.\n"
         "  Brackets are 95 % intervals.\n"
         "- **Ours, grouped** (`chunked` by default) has the paper's chunks and another schedule: a work-group shares its walks.\n"
         f"  It {against_gproximity(grouped, 'scenes', ' ')}\n"
@@ -253,22 +265,12 @@ def fastest_of(cells, scene, names):
 
 
 def title_of(cells, names):
-    """The title of the chart: the fastest methods, the number of scenes, and the names of the devices."""
+    """The title of the chart: the fastest methods with k = 18, and the number of scenes."""
     fastest = [fastest_of(cells, scene, names) for scene in SCENES]
     counts = sorted(((fastest.count(name), name) for name in set(fastest)), reverse=True)
-    devices = sorted(
-        {
-            name
-            for (_, k, method), cell in cells.items()
-            if k == "18" and method in names
-            for name in cell.devices
-        }
-    )
     where = "in every scene" if len(counts) == 1 else f"in {counts[0][0]} of {len(SCENES)} scenes"
-    return (
-        f"Fastest {where}: {counts[0][1]}"
-        + "".join(f"; in {count}: {name}" for count, name in counts[1:])
-        + f" ({', '.join(devices)})"
+    return f"Fastest with k = 18 {where}: {counts[0][1]}" + "".join(
+        f"; in {count}: {name}" for count, name in counts[1:]
     )
 
 
@@ -328,7 +330,8 @@ def picture(cells, path):
         ax.set(
             xscale="log",
             xlim=(0.025, 10),
-            xlabel="milliseconds a frame, contacts included, k = 18; bars: 95 % intervals",
+            xlabel="milliseconds per frame, contacts included, k = 18; bars: 95 % intervals\n"
+            + origins(cells),
         )
         ax.set_title(
             title_of(cells, {method: name for method, (_, _, name) in shown.items()}),
