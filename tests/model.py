@@ -1,23 +1,17 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""model.py PROGRAM SOURCE: tandem.model: known coefficients, tables of microbenchmarks, bad input, and the
-tables of results/scaling."""
+"""model.py PROGRAM SOURCE: results/scaling/model.py: known coefficients, tables of microbenchmarks, and the
+tables of the page."""
 
-import contextlib
-import io
-import json
-import lzma
 import random
-import re
 import sys
 import unittest
 
-from program import SOURCE, Case
+from program import SOURCE
+from script_case import emptied, loaded
 
-sys.dont_write_bytecode = True
-sys.path.insert(0, str(SOURCE / "python"))
-from tandem import model
-from tandem.model import fitting, loads, pages
+model = loaded("../results/scaling/model.py")
+from tandem import markdown
 
 # Microseconds: per frame, and per unit of each count.
 KNOWN = {
@@ -51,15 +45,13 @@ def record(chance, bodies, devices, with_ranks=False, frames=2):
     )
     scene = {"key": "made", "bodies": bodies, "tetrahedra": TETRAHEDRA * bodies}
     line = {
-        "schema": 4,
-        "key": "made",
         "status": "ok",
         "preset": "resident",
         "algorithm": "tiled",
         "settings": {"k": "18", "slabs": "three", "broad": "device"},
         "scene": scene,
         "partition": None,
-        "devices": [{"name": "made", "clock": "made"}] * devices,
+        "devices": [{"name": "GPU", "clock": "made"}] * devices,
         "frames": {"first": 0, "last": frames - 1},
         "work": {"body_pairs": [body_pairs] * frames, "candidate_pairs": [pairs] * frames},
         "preparation": {"device_bytes": 1e8 + 30 * TETRAHEDRA * bodies * devices + 45 * pairs},
@@ -68,7 +60,7 @@ def record(chance, bodies, devices, with_ranks=False, frames=2):
     parts = []
     for _ in range(devices):
         local_bodies = own if devices == 1 else int(own * chance.uniform(1.1, 1.6))
-        counts = loads.counts_of(
+        counts = model.counts_of(
             scene,
             local_bodies,
             own,
@@ -121,45 +113,23 @@ def records():
     ]
 
 
-def run_model(*arguments):
-    """(exit code, standard output, lines of standard error)."""
-    out = io.TextIOWrapper(io.BytesIO(), "utf-8", write_through=True)
-    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(io.StringIO()) as errors:
-        code = model.main([str(argument) for argument in arguments])
-    return code, out.buffer.getvalue().decode(), errors.getvalue().splitlines()
-
-
-class ModelCase(Case):
-    def refused(self, expected, *arguments):
-        code, _, errors = run_model(*arguments)
-        self.assertEqual((code, len(errors)), (2, 1), (arguments, errors))
-        self.assertTrue(errors[0].startswith("tandem: "), errors)
-        self.assertIn(expected, errors[0])
-
-    def file(self, name, lines):
-        path = self.work / name
-        data = "".join(line if isinstance(line, str) else json.dumps(line) + "\n" for line in lines).encode()
-        path.write_bytes(lzma.compress(data) if name.endswith(".xz") else data)
-        return path
-
-
-class Fit(ModelCase):
+class Fit(unittest.TestCase):
     def test_known_coefficients_are_found(self):
-        (model,) = fitting.fit(loads.read([self.file("made.jsonl.xz", records())], self.fail)).values()
+        (fit,) = model.fit(model.groups_of(records())).values()
         for part, (fixed, per) in KNOWN.items():
-            term = model.parts[part]
+            term = fit.parts[part]
             self.assertEqual(set(term.per), set(per), part)
             for name, value in (("fixed", fixed), *per.items()):
                 found = term.fixed if name == "fixed" else term.per[name]
                 self.assertLess(abs(found / value - 1), 0.05, (part, name, found))
-        self.assertLess(max(abs(e) for e, one in zip(model.errors, model.records) if not one.is_ranks), 0.01)
+        self.assertLess(max(abs(e) for e, one in zip(fit.errors, fit.records) if not one.is_ranks), 0.01)
         for name, value in EXCHANGE[1].items():
-            self.assertLess(abs(model.exchange.per[name] / value - 1), 0.01, name)
-        self.assertLess(abs(model.memory.per["tetrahedra"] / 30 - 1), 0.01)
-        self.assertLess(abs(model.memory.per["pairs"] / 45 - 1), 0.05)
+            self.assertLess(abs(fit.exchange.per[name] / value - 1), 0.01, name)
+        self.assertLess(abs(fit.memory.per["tetrahedra"] / 30 - 1), 0.01)
+        self.assertLess(abs(fit.memory.per["pairs"] / 45 - 1), 0.05)
 
     def test_the_costs_of_every_rank_are_found(self):
-        every = fitting.every_rank(loads.read([self.file("made.jsonl", records())], self.fail))
+        every = model.every_rank(model.groups_of(records()))
         self.assertEqual((every.bodies, every.ranks), (30000, 4))
         self.assertLess(abs(every.beyond / BESIDE - 1), 0.01)
         largest = records()[-1]
@@ -169,7 +139,7 @@ class Fit(ModelCase):
 
     def test_no_coefficient_is_negative(self):
         counts = [{"tetrahedra": n, "pairs": m} for n, m in ((1e6, 10), (2e6, 20), (4e6, 5), (9e6, 50))]
-        term = fitting.fitted(
+        term = model.fitted(
             ("tetrahedra", "pairs"), counts, [10 + c["tetrahedra"] * 2e-5 - 0.05 * c["pairs"] for c in counts]
         )
         self.assertEqual(term.per["pairs"], 0)
@@ -177,26 +147,13 @@ class Fit(ModelCase):
         self.assertGreater(max(term.errors), 1e-3)
 
     def test_constant_counts_have_no_coefficient(self):
-        term = fitting.fitted(
+        term = model.fitted(
             ("tetrahedra", "pairs"), [{"tetrahedra": n, "pairs": 7} for n in (1e5, 2e5, 3e5)], [12, 14, 16]
         )
         self.assertEqual(list(term.per), ["tetrahedra"])
 
-    def test_bad_input(self):
-        good = records()
-        few = self.file("few.jsonl", good[:2])
-        self.refused("2 records: too few", "--fit", few)
-        self.refused("No such file", "--fit", self.work / "none.jsonl")
-        for name, lines, message in (
-            ("empty", [], "is empty"),
-            ("text", [good[0], "no JSON\n"], "text.jsonl:2: is not JSON"),
-            ("list", ["[]\n"], ":1: is no record"),
-            ("half", [{**good[0], "work": None}], ":1: is no record"),
-            ("frames", [{**good[0], "frames": {"first": 1, "last": 0}}], ":1: is no record"),
-        ):
-            self.refused(message, "--fit", self.file(f"{name}.jsonl", lines))
-        self.refused("no such group; there are: made", "--group", "none", self.file("good.jsonl", good))
-        self.refused("no record of ranks", "--group", "made", self.file("alone.jsonl", good[:10]))
+    def test_few_loads_have_no_model(self):
+        self.assertEqual(model.fit(model.groups_of(records()[:2])), {})
 
     def test_tables_of_partitions(self):
         one = {
@@ -214,61 +171,23 @@ class Fit(ModelCase):
             **{name: 4 for name in ("ghosts_mean", "ghosts_most", "neighbours_mean")},
         }
         other = {"run_type": "iteration", "name": "refit/host/8", "real_time": 1}
-        path = self.file(
-            "bench.json",
-            [
-                json.dumps(
-                    {
-                        "benchmarks": [
-                            {**one, "name": "partition, parts/4/125/iterations:1"},
-                            {**met, "name": "ghosts, ranks/8/27/iterations:1"},
-                            other,
-                        ]
-                    }
-                )
-            ],
-        )
-        made = pages.partitions(path)
+        named = [
+            {**one, "name": "partition, parts/4/125/iterations:1"},
+            {**met, "name": "ghosts, ranks/8/27"},
+        ]
+        made = model.partitions([*named, other])
         self.assertEqual(
             made["partition"].splitlines()[2:], ["| 4 | 125 | 2.00 | 4000.0 | 0.88 | 50 | 90 | 2.0 |"]
         )
         self.assertEqual(made["ghosts"].splitlines()[2:], ["| 8 | 27 | 4 | 4 | 0.4 | 4.0 | 5 | 2.5 |"])
-        good = self.file("good.jsonl", records())
-        for text, expected in (
-            ("", "is not a result of scripts/bench"),
-            (
-                '{"benchmarks": [{"run_type": "iteration", "name": "ghosts, ranks/1/1"}]}',
-                "is not a result of",
-            ),
-        ):
-            self.refused(expected, "--group", "made", "--partitions", self.file("bad.json", [text]), good)
-        self.refused(
-            "scripts/bench makes it", "--group", "made", "--partitions", self.work / "none.json", good
-        )
-        page = self.file("page.md", ["<!-- model: nothing -->\n<!-- end -->\n"])
-        self.refused(
-            "no table 'nothing'; there are: coefficients, every rank",
-            "--group",
-            "made",
-            "--partitions",
-            path,
-            good,
-            "--write",
-            page,
-        )
 
 
-class Page(ModelCase):
+class Page(unittest.TestCase):
     def test_tables_equal_records_and_counts(self):
-        if not (SOURCE / "results/h100x2").exists():
-            self.skipTest("results/h100x2 is not there")
-        text, copy = (SOURCE / "results/scaling/README.md").read_text(), self.work / "page.md"
-        copy.write_text(
-            re.sub(r"(<!-- model: [a-z ]+ -->).*?<!-- end -->", r"\1 <!-- end -->", text, flags=re.DOTALL)
-        )
-        self.assertNotEqual(copy.read_text(), text)
-        self.assertEqual(run_model("--write", copy), (0, "", []))
-        self.assertEqual(copy.read_text(), text)
+        page = SOURCE / "results/scaling/README.md"
+        with emptied(page, "model") as copy:
+            markdown.rewrite(copy, "model", model.tables())
+            self.assertEqual(copy.read_text(), page.read_text())
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """pages.py PROGRAM SOURCE: numbers, tables, pictures, commands and quotes of committed pages equal what they
-come from (tandem.answer, scripts/tried, scripts/pictures). Also checks the committed microbenchmarks."""
+come from (scripts beside them, scripts/tried, scripts/pictures). Also checks the committed microbenchmarks."""
 
 import collections
 import copy
@@ -15,7 +15,10 @@ import textwrap
 import unittest
 
 from program import SOURCE
-from script_case import ScriptCase, committed, loaded, script
+from script_case import ScriptCase, committed, emptied, loaded, script
+
+answer, schedules = (loaded(f"../results/{name}.py") for name in ("h200/answer", "h100/schedules"))
+from tandem import errors, markdown
 
 QUOTE = re.compile(r"(?s)<!-- quote: (\S+) -->\n```\w+\n(.*?)```")
 
@@ -58,19 +61,24 @@ class Pages(ScriptCase):
             for path in pictures:
                 self.assertTrue((page.parent / path).is_file(), path)
 
-    def tables_of_schedules(self):
-        """Their page too; and what files of something else give."""
-        folder, copy = SOURCE / "results/h100", self.work / "schedules.md"
-        text = (folder / "README.md").read_text()
-        copy.write_text(
-            re.sub(r"(<!-- schedules: [a-z ]+ -->).*?<!-- end -->", r"\1 <!-- end -->", text, flags=re.DOTALL)
-        )
-        self.assertNotEqual(copy.read_text(), text)
-        files = folder / "schedules.jsonl", folder / "published.jsonl"
-        self.assertEqual(script("schedules", *files, "--write", copy), (0, "", []))
-        self.assertEqual(copy.read_text(), text)
-        # Composed by hand: 761 batches of 30 of the 22,824 body pairs, and the upload of one of the ten
-        # batches that were measured.
+    def test_tables_of_pages_equal_the_records(self):
+        for name, own, pages in (
+            ("answer", answer.Answer().tables, answer.PAGES),
+            ("schedules", schedules.tables, [SOURCE / "results/h100/README.md"]),
+        ):
+            texts = own()
+            for page in pages:
+                with emptied(page, name) as copied:
+                    markdown.rewrite(copied, name, texts)
+                    self.assertEqual(copied.read_text(), page.read_text(), page)
+        copied = self.work / "page.md"
+        copied.write_text("<!-- schedules: nothing -->\n<!-- end -->\n")
+        with self.assertRaisesRegex(errors.BadUse, "no table 'nothing'; there are: resident, published"):
+            markdown.rewrite(copied, "schedules", texts)
+
+    def test_composed_frames(self):
+        """By hand: 761 batches of 30 of the 22,824 body pairs, and the upload of one of the ten batches that
+        were measured."""
         records = [
             record for record in committed("h100/published.jsonl") if "glasses" in record["scene"]["key"]
         ]
@@ -80,41 +88,7 @@ class Pages(ScriptCase):
         )
         middle = lambda record, *path: sorted(functools.reduce(dict.get, path, record)["samples"])[1] / 1e6
         whole = middle(small, "total_ns") + 761 * middle(part, "stages", "write", "host_ns") / 10
-        self.assertIn(f"| {whole:,.0f} (composed)", text)
-        self.refused("schedules", "is not JSON", copy, files[1])
-
-    def test_tables_of_pages_equal_the_records(self):
-        plan = SOURCE / "results/h200/plan.jsonl"
-        for page in ("README.md", "results/h200/README.md"):
-            copy = self.work / "page.md"
-            text = (SOURCE / page).read_text()
-            self.assertIn("<!-- answer: ", text)
-            copy.write_text(
-                re.sub(
-                    r"(<!-- answer: [a-z ]+ -->).*?<!-- end -->", r"\1 <!-- end -->", text, flags=re.DOTALL
-                )
-            )
-            self.assertNotEqual(copy.read_text(), text)
-            self.assertEqual(script("answer", plan, "--write", copy), (0, "", []))
-            self.assertEqual(copy.read_text(), text, page)
-        self.tables_of_schedules()
-        copy.write_text("<!-- answer: nothing -->\n<!-- end -->\n")
-        pile = SOURCE / "results/h200/pile.jsonl"
-        for arguments, expected in (
-            ((plan, "--write", copy), "no table 'nothing'"),
-            ((plan, "--write", self.work / "none.md"), "none.md: cannot be read"),
-            ((self.work / "none.jsonl",), "No such file"),
-            ((copy,), "is not JSON"),
-            ((pile,), "pile.jsonl:1: is no record of a cell of the plan"),
-            ((plan, "--picture"), "expected one argument"),
-            ((), "arguments are required"),
-        ):
-            self.refused("answer", expected, *arguments)
-        self.refused("answer", "none/a.svg: cannot be written", plan, "--picture", self.work / "none/a.svg")
-        few = self.file("few.jsonl", committed("h200/plan.jsonl")[:3])
-        self.refused(
-            "answer", "--picture needs all scenes of the plan", few, "--picture", self.work / "few.svg"
-        )
+        self.assertIn(f"| {whole:,.0f} (composed)", schedules.published())
 
     def test_the_table_of_trials_equals_its_lines(self):
         tried, copy = SOURCE / "results/tried.jsonl", self.work / "page.md"
@@ -144,28 +118,23 @@ class Pages(ScriptCase):
         """Compares words, which are comments beside their outlines; the outlines depend on the library."""
         words = lambda path: re.findall(r"<!-- (.*?) -->", path.read_text())
         drawn = self.work / "answer.svg"
-        self.assertEqual(
-            script("answer", SOURCE / "results/h200/plan.jsonl", "--picture", drawn), (0, "", [])
-        )
+        answer.Answer().draw(drawn)
         self.assertGreater(len(words(drawn)), 10)
         self.assertEqual(words(SOURCE / "results/h200/answer.svg"), words(drawn))
 
     def test_the_title_names_only_cells_that_are_told_apart(self):
-        answer = loaded("answer")
-        cells, _ = answer.read(SOURCE / "results/h200/plan.jsonl")
-        names = {"tiled": "tiled", "chunked": "chunked, grouped"}
-        scene = next(iter(answer.SCENES))
-        cells[scene, "18", "chunked"] = copied = copy.copy(cells[scene, "18", "tiled"])
+        found = answer.Answer()
+        scene = found.scenes[0]
+        found.cells[scene, "18", "chunked"] = copied = copy.copy(found.cells[scene, "18", "tiled"])
         copied.total = {number: ms * (1.001 if number % 2 else 0.998) for number, ms in copied.total.items()}
-        copied.key = "another"
+        count = len(found.scenes)
         self.assertEqual(
-            answer.title_of(cells, names),
-            f"Fastest with k = 18 in {len(answer.SCENES) - 1} of {len(answer.SCENES)} scenes: tiled; "
-            "in 1: not told apart",
+            found.title(),
+            f"Fastest with k = 18 in {count - 1} of {count} scenes: tiled; in 1: not told apart",
         )
 
     def test_numbers_of_the_readme_are_generated(self):
-        """Measured numbers occur only between the marks of tandem.answer."""
+        """Measured numbers occur only between the marks of results/h200/answer.py."""
         text = re.sub(
             r"<!-- answer: [a-z ]+ -->.*?<!-- end -->|^    .*?$",
             "",

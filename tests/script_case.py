@@ -9,22 +9,19 @@ import importlib.util
 import io
 import json
 import os
+import pathlib
 import re
 import resource
 import subprocess
 import sys
+import tempfile
 
 from program import SOURCE, Case
 
 sys.dont_write_bytecode = True
 sys.path[:0] = [str(SOURCE / "scripts"), str(SOURCE / "python")]
 # other names are those of scripts
-MODULES = {
-    "tables": "tandem.tables",
-    "figures": "tandem.error_figures",
-    "answer": "tandem.answer",
-    "schedules": "tandem.schedules",
-}
+MODULES = {"tables": "tandem.tables", "figures": "tandem.error_figures"}
 
 
 def loaded(name, scripts={}):
@@ -79,6 +76,18 @@ def script(name, *arguments, address_space=None):
 
 def committed(name):
     return [json.loads(line) for line in (SOURCE / "results" / name).read_text().splitlines()]
+
+
+@contextlib.contextmanager
+def emptied(page, mark):
+    """A copy of a page without what stands between its marks <!-- MARK: NAME --> and <!-- end -->."""
+    text = page.read_text()
+    rest = re.sub(rf"(<!-- {mark}: [a-z ]+ -->).*?<!-- end -->", r"\1 <!-- end -->", text, flags=re.DOTALL)
+    assert rest != text, f"{page} has no {mark}"
+    with tempfile.TemporaryDirectory() as folder:
+        copy = pathlib.Path(folder, "page.md")
+        copy.write_text(rest)
+        yield copy
 
 
 def rows_of(text):

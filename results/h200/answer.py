@@ -1,0 +1,228 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""answer.py: writes the tables between <!-- answer: NAME --> and <!-- end --> of README.md and of
+results/h200/README.md, and draws answer.svg. Scenes are those of plan.json, numbers those of plan.jsonl.
+Medians have the half width of their 95 % interval. Ratios are medians over rounds that were measured side by
+side."""
+
+import csv
+import json
+import pathlib
+import sys
+
+FOLDER = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(FOLDER.parent))
+from measured import (
+    Cell,
+    RESULTS,
+    agrees,
+    inverse,
+    median_interval,
+    paired,
+    records,
+    scene_name,
+    text,
+    with_interval,
+    with_width,
+)
+from tandem import markdown
+
+PAGES = RESULTS.parent / "README.md", FOLDER / "README.md"
+METHODS = {
+    "tiled": "tiled",
+    "other": "tiled, other slabs",
+    "chunked": "chunked, grouped",
+    "sah": "chunked, grouped, tiled's trees",
+    "paper": "chunked, the paper's schedule",
+    "fair": "gproximity fair",
+    "chunked published": "chunked published",
+    "gproximity published": "gproximity published",
+}
+USUAL = ("tiled", "other", "chunked", "sah", "fair")
+PUBLISHED = ("chunked", "paper", "fair", "chunked published", "gproximity published")
+DRAWN = {
+    "tiled": ("#0b5394", "o", "tiled"),
+    "chunked": ("#6b7885", "s", "chunked, grouped"),
+    "fair": ("#96753a", "D", "gProximity"),
+}
+
+
+def scenes():
+    """Names of the plan's scenes with their frames, in its order."""
+    plan = json.loads((FOLDER / "plan.json").read_text())
+    found = {}
+    for entry in (plan, *plan["include"]):
+        own = entry.get("scenes", plan["scenes"])
+        for scene in [own] if isinstance(own, str) else own:
+            found[f"{scene_name(scene)}, frames {entry.get('frames', plan['frames'])}"] = None
+    return list(found)
+
+
+def method_of(record):
+    settings, preset, algorithm = record["settings"], record["preset"], record["algorithm"]
+    if preset == "published":
+        return f"{algorithm} published"
+    if algorithm == "gproximity":
+        return "fair"
+    if algorithm == "tiled":  # "asked" has slabs if the cell of slabs=usual took another value
+        return "tiled" if "slabs" in record["asked"] else "other"
+    return "sah" if settings["builder"] == "sah" else "paper" if settings["schedule"] == "item" else "chunked"
+
+
+class Answer:
+    """What the records tell. `cells`: by scene, k and method."""
+
+    def __init__(self, path=FOLDER / "plan.jsonl"):
+        found = records(path)
+        self.scenes, self.cells = scenes(), {}
+        self.right = [agrees(record) for record in found]
+        for record in found:
+            first, last = record["frames"]["first"], record["frames"]["last"]
+            scene = f"{scene_name(record['scene']['key'])}, frames {first}:{last}"
+            self.cells[scene, record["settings"]["k"], method_of(record)] = Cell(record)
+        self.origin = " and ".join(sorted({cell.origin for cell in self.cells.values()}))
+
+    def _table(self, methods, cell_text, needed=()):
+        """A table with one row per scene and k that has one of the needed methods, and one column per method."""
+        rows = []
+        for scene in self.scenes:
+            for k in ("8", "18"):
+                own = {method: self.cells.get((scene, k, method)) for method in METHODS}
+                if any(own[method] for method in needed or methods):
+                    rows.append([scene, k, *(cell_text(own, method) for method in methods)])
+        return markdown.table(["scene", "k", *map(METHODS.get, methods)], rows).rstrip("\n")
+
+    def _times(self, part, methods, needed=()):
+        shown = lambda own, method: with_width(getattr(own[method], part).values()) if own[method] else ""
+        return self._table(methods, shown, needed)
+
+    def _ratios(self, part):
+        def shown(own, method):
+            if not (own[method] and own["tiled"]):
+                return ""
+            ratio = paired(own[method], own["tiled"], part)
+            return ("≈ " if ratio.low <= 1 <= ratio.high else "") + with_interval(ratio)
+
+        return self._table(USUAL[1:], shown)
+
+    def tables(self):
+        """Texts by the names of their marks."""
+        return {
+            "first": self.first_lines(),
+            "frame": self._times("total", USUAL),
+            "walk": self._times("walk", USUAL),
+            "frame ratios": self._ratios("total"),
+            "walk ratios": self._ratios("walk"),
+            "published": self._times("total", PUBLISHED, ("paper", "chunked published")),
+        }
+
+    def first_lines(self):
+        """The answer as a list, for whole frames and, unless stated otherwise, k = 18."""
+        at = lambda scene, method: self.cells[scene, "18", method]
+        others = ("chunked", "fair")
+        lead = lambda scene: min(
+            (paired(at(scene, other), at(scene, "tiled")) for other in others), key=lambda ratio: ratio.value
+        )
+        grouped = [paired(at(scene, "fair"), at(scene, "chunked")) for scene in self.scenes]
+        schedule = {
+            key: paired(self.cells[*key[:2], "fair"], cell)
+            for key, cell in self.cells.items()
+            if key[2] == "paper"
+        }
+        ks = " and ".join(sorted({k for _, k, _ in schedule}, key=int))
+        low, high = claimed()
+        return f"""\
+- **Fastest: the tiled walk** (`tiled`, tiles of 32 boxes against 32).
+  A whole frame with contacts is {span(map(lead, self.scenes))} times as fast
+  as with the better of `chunked` and gProximity (k = 18, everything on the device).
+  Measured on one {self.origin}.
+  Brackets are 95 % intervals.
+- **Ours, grouped** (`chunked` by default) has the paper's chunks and another schedule: a work-group shares its walks.
+  It {against_gproximity(grouped, "scenes")}
+- **The paper's own schedule**, in which each work-item walks its own seeds, was measured in {len({scene for scene, _, _ in schedule})} of these scenes (k = {ks}).
+  It {against_gproximity(schedule.values(), "cells")}
+- **The paper's claim**, {low:.0f} to {high:.0f} times less time than gProximity, is one about uploads: most of that factor is gProximity uploading
+  [nearly empty queues](results/paper/README.md). [Each claim has a verdict](results/h200/paper/README.md).
+- **Right**: {sum(self.right)} of {len(self.right)} cells of the plan have the reference's pairs and contacts, bit for bit.
+  With default bounds no colliding pair is missed: this is [proved](algorithms/bounds/README.md), and
+  [tested](docs/user/accuracy.md) against the exact truth."""
+
+    def fastest(self, scene):
+        """The drawn method that is told to be the fastest in a scene."""
+        own = {name: self.cells[scene, "18", method] for method, (_, _, name) in DRAWN.items()}
+        best = min(own, key=lambda name: own[name].median())
+        is_clear = all(paired(cell, own[best]).low > 1 for name, cell in own.items() if name != best)
+        return best if is_clear else "not told apart"
+
+    def title(self):
+        """The title of the chart: the fastest methods, and in how many scenes."""
+        found = [self.fastest(scene) for scene in self.scenes]
+        counts = sorted(((found.count(name), name) for name in set(found)), reverse=True)
+        where = "in every scene" if len(counts) == 1 else f"in {counts[0][0]} of {len(found)} scenes"
+        return f"Fastest with k = 18 {where}: {counts[0][1]}" + "".join(
+            f"; in {count}: {name}" for count, name in counts[1:]
+        )
+
+    def _draw_row(self, ax, row, scene):
+        """Draws medians with intervals of the methods in one scene."""
+        for method, (colour, marker, name) in DRAWN.items():
+            cell = self.cells[scene, "18", method]
+            ax.plot(median_interval(list(cell.total.values())), [row, row], color=colour, linewidth=3, alpha=0.6)
+            ax.plot(cell.median(), row, marker, color=colour, markersize=7, label=name if row == 0 else None)
+            if method == "tiled":
+                place = {"xy": (cell.median(), row), "xytext": (0, 8), "textcoords": "offset points"}
+                ax.annotate(text(cell.median()), ha="center", color=colour, weight="bold", fontsize=8, **place)
+
+    def draw(self, path):
+        """Draws milliseconds per frame of three methods with intervals, one row per scene."""
+        import matplotlib
+
+        matplotlib.use("svg")
+        import matplotlib.pyplot as plt
+
+        style = {"svg.hashsalt": "tandem", "font.size": 9, "axes.spines.top": False, "axes.spines.right": False}
+        with matplotlib.rc_context(style):
+            figure, ax = plt.subplots(figsize=(7, 2.9), layout="constrained")
+            for row, scene in enumerate(self.scenes):
+                self._draw_row(ax, row, scene)
+            ax.set_yticks(range(len(self.scenes)), self.scenes)
+            ax.set_ylim(len(self.scenes) - 0.5, -0.7)
+            label = "milliseconds per frame, contacts included, k = 18; bars: 95 % intervals\n" + self.origin
+            ax.set(xscale="log", xlim=(0.05, 10), xlabel=label)
+            ax.set_title(self.title(), loc="left", fontweight="bold", fontsize=10.5)
+            ax.xaxis.set_major_formatter("{x:g}")
+            ax.grid(axis="x", alpha=0.25)
+            ax.legend(loc="upper right", frameon=False)
+            figure.savefig(path, metadata={"Date": None})
+            plt.close(figure)
+
+
+def claimed():
+    """The least and the greatest factor of the paper's Table 4 between times of the narrow phase."""
+    with open(RESULTS / "paper/table4.csv", newline="") as file:
+        factors = [float(row["narrow"]) for row in csv.DictReader(file)]
+    return min(factors), max(factors)
+
+
+def span(ratios):
+    """Range of ratios with the intervals of its ends: "1.38 [1.37, 1.4] to 2.05 [2.03, 2.07]"."""
+    ordered = sorted(ratios, key=lambda ratio: ratio.value)
+    return " to ".join(map(with_interval, ordered[:1] + ordered[1:][-1:]))
+
+
+def against_gproximity(ratios, noun):
+    """One or two sentences on gProximity's times over those of a method: where it is faster, where slower."""
+    wins = [ratio for ratio in ratios if ratio.value >= 1]
+    loses = [inverse(ratio) for ratio in ratios if ratio.value < 1]
+    if not wins:
+        return f"takes {span(loses)} times as long as gProximity in all {len(loses)} {noun}."
+    others = "others" if len(loses) > 1 else "other"
+    rest = f" In the {others} it takes {span(loses)} times as long." if loses else ""
+    return f"is {span(wins)} times as fast as gProximity in {len(wins)} of {len(ratios)} {noun}.{rest}"
+
+
+if __name__ == "__main__":
+    answer = Answer()
+    for page in PAGES:
+        markdown.rewrite(page, "answer", answer.tables())
+    answer.draw(FOLDER / "answer.svg")

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: MIT
+"""Cells of committed records, for the scripts beside pages that write their tables."""
+
+import json
+import pathlib
+import re
+import statistics
+import sys
+
+RESULTS = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(RESULTS.parent / "python"))
+from tandem.resampling import Ratio, median_interval, paired_ratio
+
+WALK = ("refit", "seed", "traverse", "balance")
+
+
+def records(path):
+    """The records of cells of a file."""
+    found = map(json.loads, path.read_text().splitlines())
+    return [record for record in found if record.get("kind") != "verdict"]
+
+
+def agrees(record):
+    """Whether the cell's answer is equal to the reference's."""
+    wrong = [record["agreement"][name] for name in ("missing", "extra", "contact_frames_wrong")]
+    return record["status"] == "ok" and wrong == [0, 0, 0]
+
+
+def frames_of(record):
+    return record["frames"]["last"] - record["frames"]["first"] + 1
+
+
+class Cell:
+    """Milliseconds per frame by round: `total` of samples, and `walk`, the device time of refit and walk, from
+    replays that time every command."""
+
+    def __init__(self, record):
+        scale = 1 / frames_of(record) / 1e6
+        by_round = {}
+        for number, ns in zip(record["total_ns"]["rounds"], record["total_ns"]["samples"]):
+            by_round.setdefault(number, []).append(ns * scale)
+        self.total = {number: statistics.median(own) for number, own in by_round.items()}
+        stages = [record["stages"][name] for name in WALK if name in record["stages"]]
+        walks = zip(*(stage["device_ns"]["samples"] for stage in stages))
+        self.walk = {number: sum(own) * scale for number, own in enumerate(walks)}
+        devices = " and ".join(sorted({device["name"] for device in record["devices"]}))
+        made = record["environment"]
+        self.origin = f"{devices}, commit {made['commit'][:7]} of {made['date'][:10]}"
+
+    def median(self):
+        return statistics.median(self.total.values())
+
+
+def scene_name(scene):
+    """How pages name a scene: by its name in a plan, or by its key in a record."""
+    kind, _, rest = scene.partition(":")
+    values = dict(re.findall(r"(\w+)=([^,]+)", rest))
+    if kind == "pile":
+        return f"{int(values['bodies']):,} {values['mesh']}s, density {values['density']}"
+    return rest.partition(",")[0] if kind == "recording" else pathlib.Path(kind).stem
+
+
+def paired(cell, base, part="total"):
+    """The Ratio of the times of a cell to those of `base`, over their common rounds."""
+    above, below = getattr(cell, part), getattr(base, part)
+    common = [number for number in above if number in below]
+    return paired_ratio([below[number] for number in common], [above[number] for number in common])
+
+
+def inverse(ratio):
+    return Ratio(1 / ratio.value, 1 / ratio.high, 1 / ratio.low, ratio.log_error)
+
+
+def text(value):
+    return f"{value:.3g}" if value < 100 else f"{value:,.0f}"
+
+
+def with_interval(ratio):
+    """ "1.38 [1.37, 1.40]"."""
+    return f"{text(ratio.value)} [{text(ratio.low)}, {text(ratio.high)}]"
+
+
+def with_width(values):
+    """The median with half the width of its interval: "0.348 ± 0.002"."""
+    values = list(values)
+    low, high = median_interval(values)
+    half, middle = (high - low) / 2, statistics.median(values)
+    digits = max(0, min(5, 2 - len(str(int(middle))) + 1 if half == 0 else -int(f"{half:e}".split("e")[1])))
+    return f"{middle:,.{digits}f} ± {half:.{digits}f}"
