@@ -21,7 +21,7 @@ class Outputs(Case):
         self.mesh = self.folder / "mesh.msh"
         shutil.copy(self.good, self.mesh)
         self.records = self.folder / "records.jsonl"
-        shutil.copy(SOURCE / "results/h200/pile.jsonl", self.records)
+        shutil.copy(SOURCE / "results/h200/convert.jsonl", self.records)
 
     def names(self, path):
         """The file under its own name, by a symbolic link, by a hard link and by a link to a link."""
@@ -113,7 +113,7 @@ class Outputs(Case):
         )
 
     def test_pages(self):
-        plan = SOURCE / "results/h200/pile.jsonl"
+        plan = SOURCE / "results/h200/convert.jsonl"
         self.kept(self.records, "is an input", "report", self.records, "-o", lambda name: name)
         self.kept(self.records, "is a file of records", "report", plan, "-o", lambda name: name)
         self.kept(
@@ -164,11 +164,11 @@ class Outputs(Case):
         for _ in range(2):
             self.assertEqual(tandem("run", "--mesh", self.mesh, *ONE, "--out", self.records)[0], 0)
         whole = self.records.read_bytes()
-        self.assertTrue(whole.startswith((SOURCE / "results/h200/pile.jsonl").read_bytes()))
+        self.assertTrue(whole.startswith((SOURCE / "results/h200/convert.jsonl").read_bytes()))
 
     def test_places_that_cannot_be_written(self):
         long, missing = self.folder / ("n" * 250), self.folder / "missing/output"
-        plan = SOURCE / "results/h200/pile.jsonl"
+        plan = SOURCE / "results/h200/convert.jsonl"
         commands = [
             ("run", "--mesh", self.mesh, *ONE, option) for option in ("--out", "--dump-pairs", "--trace")
         ]

@@ -139,8 +139,10 @@ class Reading(unittest.TestCase):
         self.assertGreater(records.frames["ms"].min(), 0)
 
     def test_errors_equal_those_of_the_truth(self):
-        records = tandem.read(H200 / "accuracy.jsonl")
-        written = [json.loads(line) for line in (H200 / "accuracy.jsonl").read_text().splitlines()]
+        records = tandem.read(SOURCE / "tests/records/accuracy.jsonl")
+        written = [
+            json.loads(line) for line in (SOURCE / "tests/records/accuracy.jsonl").read_text().splitlines()
+        ]
         self.assertEqual(
             set(records.errors["cell"]), {i for i, r in enumerate(written) if r["error"]["truth"]}
         )
@@ -159,8 +161,8 @@ class Reading(unittest.TestCase):
                 )
 
     def test_several_files_and_packed_ones(self):
-        one, packed = H200 / "tiled.jsonl", H200 / "plates.jsonl"
-        other = pathlib.Path(FOLDER.name) / "plates.jsonl.xz"
+        one, packed = H200 / "convert.jsonl", H200 / "seeds.jsonl"
+        other = pathlib.Path(FOLDER.name) / "seeds.jsonl.xz"
         other.write_bytes(lzma.compress(packed.read_bytes(), preset=0))
         cells = tandem.read([one, other]).cells
         self.assertEqual(list(cells["file"].unique()), [str(one), str(other)])
@@ -332,7 +334,7 @@ class Comparing(unittest.TestCase):
 
     def test_nothing_in_common(self):
         with self.assertRaisesRegex(tandem.RecordError, "have no cell in common"):
-            tandem.compare(H200 / "seeds.jsonl", H200 / "thresholds.jsonl")
+            tandem.compare(H200 / "seeds.jsonl", H200 / "paper/records/thresholds.jsonl")
         with self.assertRaisesRegex(tandem.RecordError, "no record of commit abc"):
             tandem.compare(f"{H200}/seeds.jsonl@abc", H200 / "seeds.jsonl")
         with self.assertRaisesRegex(tandem.RecordError, "no commit behind the @"):
@@ -393,17 +395,19 @@ class Drawing(unittest.TestCase):
         self.assertEqual(list(axes.lines[0].get_xdata()), list(range(20, 122)))
 
     def test_sweeps_name_the_best_value(self):
-        records = tandem.read(H200 / "thresholds.jsonl")
+        records = tandem.read(H200 / "paper/records/thresholds.jsonl")
         axes = tandem.plot_sweep(records, "seed_threshold")
         best = records.cells.loc[records.cells["ms"].idxmin(), "set_seed_threshold"]
         self.assertIn(str(best), axes.get_title("left"))
         self.assertEqual(sum(len(line.get_xdata()) for line in axes.lines), len(records.cells))
 
     def test_errors_name_the_cells_that_none_beats(self):
-        records = tandem.read(H200 / "accuracy.jsonl")
+        records = tandem.read(SOURCE / "tests/records/accuracy.jsonl")
         scene = records.cells["scene"].str.startswith("plates") & (records.cells["device"] == "cuda:0")
         plates = records.of(scene & (records.cells["set_k"] == 18))
-        written = [json.loads(line) for line in (H200 / "accuracy.jsonl").read_text().splitlines()]
+        written = [
+            json.loads(line) for line in (SOURCE / "tests/records/accuracy.jsonl").read_text().splitlines()
+        ]
         points = {}
         for cell in plates.cells.index:
             record = written[cell]

@@ -136,13 +136,13 @@ class Reading(Case):
         position."""
         chance = random.Random(20180606)
         sources = [
-            H200 / name
+            SOURCE / name
             for name in (
-                "plan.jsonl",
-                "accuracy.jsonl",
-                "profile.jsonl",
-                "ceilings.jsonl",
-                "simulation-funnel.jsonl",
+                "results/h200/plan.jsonl",
+                "tests/records/accuracy.jsonl",
+                "results/h200/profile.jsonl",
+                "results/h200/ceilings.jsonl",
+                "results/h200/paper/records/sim-funnel.jsonl",
             )
         ]
         shown = refused = 0
@@ -357,7 +357,16 @@ class Commands(Case):
         )
         page = self.work / "numpy.html"
         done = subprocess.run(
-            ["/usr/bin/python3", "-c", text, PROGRAM, H200 / "plates.jsonl", "--output", page, "--sentences"],
+            [
+                "/usr/bin/python3",
+                "-c",
+                text,
+                PROGRAM,
+                H200 / "convert.jsonl",
+                "--output",
+                page,
+                "--sentences",
+            ],
             capture_output=True,
             text=True,
         )

@@ -39,14 +39,14 @@ class Access(ReportCase):
         }
         files = [self.write("plan.jsonl", [*self.plan[:12], other])]
         for name, count in (
-            ("accuracy", 8),
-            ("profile", 1),
-            ("ceilings", 9),
-            ("simulation-funnel", 40),
-            ("thresholds", 9),
+            ("tests/records/accuracy", 8),
+            ("results/h200/profile", 1),
+            ("results/h200/ceilings", 9),
+            ("results/h200/paper/records/sim-funnel", 40),
+            ("results/h200/paper/records/thresholds", 9),
         ):
-            lines = (RECORDS / f"{name}.jsonl").read_text().splitlines()[:count]
-            files.append(self.write(f"{name}.jsonl", map(json.loads, lines)))
+            path = SOURCE / f"{name}.jsonl"
+            files.append(self.write(path.name, map(json.loads, path.read_text().splitlines()[:count])))
         self.check(self.report(*files, "--scene", "plates", "--frames", "20:22", "--contacts"))
 
     def test_a_page_with_a_comparison(self):

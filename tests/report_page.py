@@ -10,7 +10,7 @@ import sys
 import time
 import unittest
 
-from program import LONG, tandem
+from program import LONG, SOURCE, tandem
 from report_case import RECORDS, ReportCase
 
 MANY = 3000 if LONG else 600  # cells of a long table
@@ -66,9 +66,10 @@ class Pages(ReportCase):
         return self.browser.run("document.getElementById('cell-count').textContent")
 
     def test_all_committed_records(self):
-        files = ["plan", "profile", "accuracy", "ceilings", "simulation-colosseum", "simulation-funnel"]
+        simulations = (RECORDS / f"paper/records/sim-{name}.jsonl" for name in ("colosseum", "funnel"))
+        cells = RECORDS / "plan.jsonl", RECORDS / "slabs.jsonl", SOURCE / "tests/records/accuracy.jsonl"
         page = self.report(
-            *(RECORDS / f"{name}.jsonl" for name in files),
+            *(*cells, RECORDS / "profile.jsonl", RECORDS / "ceilings.jsonl", *simulations),
             "--scene",
             "plates",
             "--frames",
@@ -76,10 +77,8 @@ class Pages(ReportCase):
             "--contacts",
         )
         self.opened(page)
-        cells = sum(
-            len((RECORDS / f"{name}.jsonl").read_text().splitlines()) for name in ("plan", "accuracy")
-        )
-        self.assertEqual(self.browser.run(f"{ROWS}.length"), cells)
+        count = sum(len(path.read_text().splitlines()) for path in cells)
+        self.assertEqual(self.browser.run(f"{ROWS}.length"), count)
         self.check_charts()
         self.check_scene()
         self.check_sizes_and_colours()
@@ -178,8 +177,8 @@ class Pages(ReportCase):
         )
 
     def test_tables_fit_1400_pixels_and_are_cards_on_a_phone(self):
-        files = ["plan", "profile", "accuracy", "ceilings"]
-        page = self.report(*(RECORDS / f"{name}.jsonl" for name in files))
+        files = (RECORDS / f"{name}.jsonl" for name in ("plan", "profile", "ceilings"))
+        page = self.report(*files, SOURCE / "tests/records/accuracy.jsonl")
         self.browser.size(1400, 900)
         self.opened(page)
         self.assertEqual(self.too_wide(), [])
@@ -282,8 +281,8 @@ class Pages(ReportCase):
         self.assertNotIn("recorded again", self.browser.run("document.getElementById('summary').textContent"))
 
     def test_against_equals_compare(self):
-        old, new = RECORDS / "tiled.jsonl", self.work / "new.jsonl"
-        records = [json.loads(line) for line in old.read_text().splitlines()]
+        old, new = RECORDS / "paper/records/thresholds.jsonl", self.work / "new.jsonl"
+        records = [record for record in map(json.loads, old.read_text().splitlines()) if "key" in record]
         for i, record in enumerate(records):
             record["session"] = "0" * 16
             if i % 3 == 0 and record["status"] == "ok":
@@ -313,7 +312,7 @@ class Pages(ReportCase):
         """The summary, the chart, its table, and each cell give the same result of a comparison, in ms a frame."""
         text = self.browser.run
         self.assertEqual(self.text("#summary .lead"), self.text("#differences-title"))
-        self.assertIn("new, against tiled. ", self.text("#made").replace(".jsonl", ""))
+        self.assertIn("new, against thresholds. ", self.text("#made").replace(".jsonl", ""))
         cells = text("JSON.parse(document.getElementById('data-records').textContent).cells")
         place = text("JSON.parse(document.getElementById('data-records').textContent).fields").index("ms")
         for row in shown["cells"]:
@@ -322,9 +321,9 @@ class Pages(ReportCase):
         text(f"document.querySelector('#cell-table tr[data-cell=\"{slowest['cell']}\"] button').click()")
         details = self.text(".details")
         self.assertRegex(
-            details, r"comparison1\.1\d* times the time in tiled\.jsonl: ", "three rounds have no interval"
+            details, r"comparison1\.1\d* times the time in thresholds\.jsonl: ", "three rounds have no interval"
         )
-        self.assertIn(f"tiled.jsonl: {slowest['verdict']}conditions", details)
+        self.assertIn(f"thresholds.jsonl: {slowest['verdict']}conditions", details)
 
     def test_bad_files(self):
         empty, other, text, cut = (

@@ -16,17 +16,17 @@ import unittest
 from program import LONG, PROGRAM, SMALL, SOURCE, sets, tandem
 from script_case import ScriptCase, called, committed, rows_of, script
 
-COMMITTED = sorted([*SOURCE.glob("results/*/*.jsonl"), *SOURCE.glob("results/*/*.jsonl.xz")])
+COMMITTED = sorted([*SOURCE.glob("results/*/*.jsonl"), *SOURCE.glob("tests/records/*.jsonl")])
+PACKED = "chosen.jsonl"  # which the test packs
 
 
 class Scripts(ScriptCase):
     def sample(self, path):
         """A copy of a committed file; in the short form only a few of its lines."""
-        data = lzma.open(path).read() if path.suffix == ".xz" else path.read_bytes()
-        lines = data.splitlines(keepends=True)
+        lines = path.read_bytes().splitlines(keepends=True)
         lines = lines if LONG else [*lines[: -1 : -(-len(lines) // 12)], lines[-1]]
-        copy = self.work / path.name
-        copy.write_bytes(lzma.compress(b"".join(lines)) if path.suffix == ".xz" else b"".join(lines))
+        copy = self.work / (path.name + ".xz" if path.name == PACKED else path.name)
+        copy.write_bytes(lzma.compress(b"".join(lines)) if path.name == PACKED else b"".join(lines))
         return copy, [json.loads(line) for line in lines]
 
     def test_every_committed_file(self):
@@ -59,7 +59,7 @@ class Scripts(ScriptCase):
                 self.assertIn(
                     f"{len(records)} lines of the newest schema", self.output_of("convert_records", copy)
                 )
-                unpack = lzma.decompress if path.suffix == ".xz" else bytes
+                unpack = lzma.decompress if path.name == PACKED else bytes
                 same = [json.loads(line) for line in unpack(copy.read_bytes()).splitlines()]
                 self.assertEqual(same, [json.loads(line) for line in unpack(before).splitlines()])
                 if LONG or path in COMMITTED[:2]:
@@ -145,7 +145,7 @@ class Scripts(ScriptCase):
                 self.assertNotIn("Traceback", "".join(errors))
 
     def test_an_unfinished_last_line_is_ignored(self):
-        whole = self.file("whole.jsonl", committed("h200/accuracy.jsonl")[:2])
+        whole = self.file("whole.jsonl", committed("../tests/records/accuracy.jsonl")[:2])
         torn = self.work / "cut.jsonl"
         torn.write_text(whole.read_text() + whole.read_text()[:100])
         self.assertEqual(script("tables", torn)[1], self.output_of("tables", whole))
@@ -208,11 +208,11 @@ class Scripts(ScriptCase):
         presets = set()
         for name in (
             "h200/plan.jsonl",
-            "h200/auto.jsonl",
+            "../tests/records/chosen.jsonl",
             "h100x2/shares.jsonl",
             "h100x2/passage/hosts.jsonl",
             "h200/profile.jsonl",
-            "h200/simulation-funnel.jsonl",
+            "h200/paper/records/sim-meteor.jsonl",
         ):
             records = committed(name)
             presets.update(record["preset"] for record in records if record.get("algorithm") == "chunked")
@@ -256,7 +256,7 @@ class Scripts(ScriptCase):
         )
         self.assertEqual((status, errors), (0, []), text)
         kernels = json.loads(profile.read_text())["kernels"]
-        steps = committed("h200/simulation-funnel.jsonl")
+        steps = committed("h200/paper/records/sim-meteor.jsonl")
         text = self.output_of(
             "tables",
             profile,
@@ -269,14 +269,14 @@ class Scripts(ScriptCase):
             self.assertEqual(rows[kernel["entry"]][1:2], [kernel["stage"]])
             self.assertIn("±", rows[kernel["entry"]][2])
         self.assertEqual(ceilings, ["3908", "3937"])
-        self.assertIn("150", rows[steps[-1]["scene"]["key"]])
+        self.assertIn("500", rows[steps[-1]["scene"]["key"]])
         self.assertIn("5 steps of a simulation that has not ended", text)
         self.refused("figures", "no record has errors", profile, self.work / "none")
 
     def test_long_files(self):
         """A hundred thousand cells of one scene, each with its own setting, in bounded memory."""
         record = {
-            **committed("h200/plates.jsonl")[0],
+            **committed("h200/seeds.jsonl")[0],
             "kernels": [],
             "conditions": None,
             "kernel_times": {},

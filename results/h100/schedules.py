@@ -14,7 +14,18 @@ import sys
 
 FOLDER = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(FOLDER.parent))
-from measured import Cell, agrees, frames_of, inverse, paired, records, scene_name, text, with_interval, with_width
+from measured import (
+    Cell,
+    agrees,
+    frames_of,
+    inverse,
+    paired,
+    records,
+    scene_name,
+    text,
+    with_interval,
+    with_width,
+)
 from tandem import markdown
 from tandem.paper.quantities import batch_size
 
@@ -90,7 +101,13 @@ def published():
                 for name in ("array, K40c", "array, this GPU")
             )
             rows.append([scene, f"{small.body_pairs:,}", *times, *whole])
-    heads = ["scene", "body pairs", "chunked", "gProximity, array of 4 MiB", "a K40c's sizes and array (3.02 GB)"]
+    heads = [
+        "scene",
+        "body pairs",
+        "chunked",
+        "gProximity, array of 4 MiB",
+        "a K40c's sizes and array (3.02 GB)",
+    ]
     return markdown.table([*heads, "this GPU's sizes and array"], rows).rstrip("\n")
 
 

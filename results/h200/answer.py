@@ -167,11 +167,15 @@ class Answer:
         """Draws medians with intervals of the methods in one scene."""
         for method, (colour, marker, name) in DRAWN.items():
             cell = self.cells[scene, "18", method]
-            ax.plot(median_interval(list(cell.total.values())), [row, row], color=colour, linewidth=3, alpha=0.6)
+            ax.plot(
+                median_interval(list(cell.total.values())), [row, row], color=colour, linewidth=3, alpha=0.6
+            )
             ax.plot(cell.median(), row, marker, color=colour, markersize=7, label=name if row == 0 else None)
             if method == "tiled":
                 place = {"xy": (cell.median(), row), "xytext": (0, 8), "textcoords": "offset points"}
-                ax.annotate(text(cell.median()), ha="center", color=colour, weight="bold", fontsize=8, **place)
+                ax.annotate(
+                    text(cell.median()), ha="center", color=colour, weight="bold", fontsize=8, **place
+                )
 
     def draw(self, path):
         """Draws milliseconds per frame of three methods with intervals, one row per scene."""
@@ -180,7 +184,12 @@ class Answer:
         matplotlib.use("svg")
         import matplotlib.pyplot as plt
 
-        style = {"svg.hashsalt": "tandem", "font.size": 9, "axes.spines.top": False, "axes.spines.right": False}
+        style = {
+            "svg.hashsalt": "tandem",
+            "font.size": 9,
+            "axes.spines.top": False,
+            "axes.spines.right": False,
+        }
         with matplotlib.rc_context(style):
             figure, ax = plt.subplots(figsize=(7, 2.9), layout="constrained")
             for row, scene in enumerate(self.scenes):
