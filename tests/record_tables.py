@@ -55,7 +55,10 @@ class Tables(ScriptCase):
 
     def test_cells_that_failed_or_are_wrong_are_shown_and_never_ranked(self):
         plates = {
-            record["algorithm"] + record["preset"]: {**record, "sampling": {**record["sampling"], "converged": True}}
+            record["algorithm"] + record["preset"]: {
+                **record,
+                "sampling": {**record["sampling"], "converged": True},
+            }
             for record in reversed(committed("h200/plan.jsonl"))
             if record["settings"]["k"] == "8" and record["scene"]["name"] == "plates"
         }

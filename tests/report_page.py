@@ -321,7 +321,9 @@ class Pages(ReportCase):
         text(f"document.querySelector('#cell-table tr[data-cell=\"{slowest['cell']}\"] button').click()")
         details = self.text(".details")
         self.assertRegex(
-            details, r"comparison1\.1\d* times the time in thresholds\.jsonl: ", "three rounds have no interval"
+            details,
+            r"comparison1\.1\d* times the time in thresholds\.jsonl: ",
+            "three rounds have no interval",
         )
         self.assertIn(f"thresholds.jsonl: {slowest['verdict']}conditions", details)
 

@@ -7,11 +7,11 @@
 
 #include <functional>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <span>
 
 namespace tandem {
 
-struct Choice;  // choosing/choice.h
 class RankTeam; // ranks/rank_team.h
 
 /// A cell: algorithm x settings x devices. The run adds the scene and frames.
@@ -24,7 +24,8 @@ struct Cell {
     /// Only for `auto`: the cells to choose from, which give the same answer. Until the choice, this cell
     /// equals the first of them.
     std::vector<Cell> candidates{};
-    std::shared_ptr<const Choice> chosen{}; ///< how auto chose it; null when the user named it
+    /// How auto chose it, as in its record (choosing/choice.h); null when the user named it.
+    std::shared_ptr<const nlohmann::ordered_json> chosen{};
 };
 
 /// The algorithm name that stands for the fastest of all algorithms.

@@ -111,7 +111,7 @@ Fields<CellRecord> subject_fields() {
                  "how algorithm and settings were chosen; null where the user named them; records from "
                  "before it have none")),
              "",
-             [](auto& r) { return r.cell.chosen ? choice_json(*r.cell.chosen) : Json(); },
+             [](auto& r) { return r.cell.chosen ? *r.cell.chosen : Json(); },
              {.optional = true}},
             {"scene", scene_fields().type("what was collided"), "",
              [](auto& r) { return scene_fields().write(r.scene); }},

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "harness/plans/choosing/candidates.h"
 
-#include "algorithms/narrow_phase/contact_settings.h"
 #include "base/error.h"
+#include "harness/plans/choosing/choose.h"
+#include "scenes/scene.h"
 #include "tests/support/cells.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace tandem {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
 
 DeviceGroup on_host() { return {&support::device("host")}; }
 
@@ -36,35 +35,13 @@ TEST(ChoosingCandidates, EveryAlgorithmWithEveryAlternative) {
         EXPECT_EQ(cells[i].algorithm, algorithms()[i]);
         EXPECT_EQ(cells[i].preset, algorithms()[i]->presets().front().name);
     }
-    EXPECT_EQ(values_of(cells, "chunked", "leaves"), (std::set<std::string>{"0", "8", "64", "512"}));
     EXPECT_EQ(values_of(cells, "tiled", "slabs"), (std::set<std::string>{"usual", "all"}))
         << "`usual` equals `three`";
     for (const auto* traversal : algorithms())
         EXPECT_EQ(values_of(cells, traversal->name(), "builder"), (std::set<std::string>{"morton", "sah"}));
-}
-
-/// On a device with groups of one work-item, all group sizes are one candidate.
-TEST(ChoosingCandidates, AreAllDifferent) {
-    const auto cells = of({});
     std::set<std::string> different;
-    for (const auto& cell : cells) {
-        EXPECT_EQ(cell.settings.text("group_size"), "0");
-        different.insert(describe(cell));
-    }
+    for (const auto& cell : cells) different.insert(describe(cell));
     EXPECT_EQ(different.size(), cells.size());
-}
-
-TEST(ChoosingCandidates, ExplicitSettingsAreKept) {
-    const auto cells = of({{"k", "8"}, {"builder", "morton"}, {"leaves", "32"}, {"contact_rule", "none"}});
-    ASSERT_FALSE(cells.empty());
-    for (const auto& cell : cells) {
-        EXPECT_EQ(cell.settings.text("k"), "8");
-        EXPECT_EQ(cell.settings.text("builder"), "morton");
-        EXPECT_EQ(cell.settings.text("contact_rule"), "none");
-    }
-    EXPECT_EQ(values_of(cells, "chunked", "leaves"), std::set<std::string>{"32"});
-    // A value of `leaves` would override the chunk's bytes.
-    EXPECT_EQ(values_of(of({{"chunk_bytes", "20000"}}), "chunked", "leaves"), std::set<std::string>{"0"});
 }
 
 /// The paper's presets use k = 8, all others 18: the first preset named decides.
@@ -95,31 +72,6 @@ TEST(ChoosingCandidates, DifferInKOnlyIfContactsAreEqualForEveryK) {
     EXPECT_EQ(of(exact).front().settings.text("k"), "18") << "unchanged presets first";
 }
 
-/// Sums of three coordinates are rounded twice, so their bounds miss pairs without safe rounding.
-TEST(ChoosingCandidates, ContactsAreEqualForEveryKWhoseBoundsMissNothing) {
-    const auto& tiled = algorithm("tiled");
-    for (const auto& k : parameters::k.choices()) {
-        const auto equal = [&](const std::string& rounding) {
-            const SettingTexts given{{"k", std::string(k.text)},
-                                     {"rounding", rounding},
-                                     {"output", "contacts"},
-                                     {"decision", "exact"}};
-            return contacts_are_equal_for_every_k(resolve(tiled.parameters(), {}, given, tiled.name()));
-        };
-        EXPECT_TRUE(equal("safe")) << k.text;
-        EXPECT_TRUE(equal("directed")) << k.text;
-        EXPECT_FALSE(equal("published")) << k.text;
-        EXPECT_EQ(equal("nearest"), k.value == 6 || k.value == 12 || k.value == 16 || k.value == 18)
-            << k.text;
-    }
-}
-
-TEST(ChoosingCandidates, SettingsOfNoCandidateAreRefused) {
-    EXPECT_EQ(support::declares(*algorithms().front(), "axes"), true);
-    EXPECT_THROW(of({{"axes", "coordinate"}}), InputError);
-    EXPECT_THROW(of({{"k", "10"}}), InputError);
-}
-
 TEST(ChoosingCandidates, AutoIsSelectedByNameOnly) {
     Request request;
     const std::vector<DeviceGroup> devices{on_host()};
@@ -132,8 +84,23 @@ TEST(ChoosingCandidates, AutoIsSelectedByNameOnly) {
     ASSERT_EQ(cells.size(), 4u);
     EXPECT_EQ(cells[0].settings.text("k"), "6");
     EXPECT_EQ(cells[1].settings.text("k"), "18");
-    EXPECT_GT(cells[1].candidates.size(), 10u);
+    EXPECT_GT(cells[1].candidates.size(), 5u);
     EXPECT_TRUE(cells[2].candidates.empty());
+}
+
+TEST(ChoosingCandidates, AreAskedForByClassAndByFixedSettings) {
+    const auto question = [](const char* scene, std::uint64_t pairs, const SettingTexts& given) {
+        return question_of(undecided_cell({}, given, on_host()), make_scene(scene), pairs);
+    };
+    const auto first = question("pile:bodies=4,frames=1", 100, {});
+    EXPECT_EQ(question("pile:bodies=5,frames=1", 200, {}), first); // both are rounded down to 4^3 pairs
+    // An explicit default matters only for an algorithm that has not been chosen yet.
+    EXPECT_EQ(question("pile:bodies=4,frames=1", 100, {{"k", "18"}}), first);
+    EXPECT_NE(question("pile:bodies=20,frames=1", 100, {}), first);
+    for (const std::uint64_t pairs : {0, 256})
+        EXPECT_NE(question("pile:bodies=4,frames=1", pairs, {}), first);
+    for (const auto& given : {SettingTexts{{"k", "6"}}, {{"contact_rule", "none"}}, {{"threads", "1"}}})
+        EXPECT_NE(question("pile:bodies=4,frames=1", 100, given), first);
 }
 
 } // namespace

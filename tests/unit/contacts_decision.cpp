@@ -2,7 +2,10 @@
 // Setting decision against the exact oracle, on pairs that touch, nearly touch and are clearly separate.
 #include "contacts_pairs.h"
 
+#include "algorithms/narrow_phase/contact_settings.h"
 #include "algorithms/narrow_phase/reference_pair.h"
+#include "algorithms/parameters/table.h"
+#include "algorithms/traversal.h"
 #include "tests/support/oracle_pairs.h"
 
 #include <gtest/gtest.h>
@@ -201,6 +204,25 @@ TEST(ContactsDecision, FlatAndUnusableTetrahedraAreDecidedExactly) {
     EXPECT_EQ(decide(flat_inside), Counted(0, 1));
     EXPECT_EQ(decide(flat_beside), Counted(1, 0));
     EXPECT_EQ(decide(spoiled), Counted(0, 1));
+}
+
+/// Sums of three coordinates are rounded twice, so their bounds miss pairs without safe rounding.
+TEST(ExactContacts, AreEqualForEveryKWhoseBoundsMissNothing) {
+    const auto& tiled = algorithm("tiled");
+    for (const auto& k : parameters::k.choices()) {
+        const auto equal = [&](const std::string& rounding) {
+            const SettingTexts given{{"k", std::string(k.text)},
+                                     {"rounding", rounding},
+                                     {"output", "contacts"},
+                                     {"decision", "exact"}};
+            return contacts_are_equal_for_every_k(resolve(tiled.parameters(), {}, given, tiled.name()));
+        };
+        EXPECT_TRUE(equal("safe")) << k.text;
+        EXPECT_TRUE(equal("directed")) << k.text;
+        EXPECT_FALSE(equal("published")) << k.text;
+        EXPECT_EQ(equal("nearest"), k.value == 6 || k.value == 12 || k.value == 16 || k.value == 18)
+            << k.text;
+    }
 }
 
 } // namespace

@@ -3,7 +3,7 @@
 #include "harness/plans/frames.h"
 
 #include "harness/verify/accuracy/answer_errors_json.h"
-#include "harness/plans/choosing/trials.h"
+#include "harness/plans/choosing/choose.h"
 #include "harness/sampling/local_sampler.h"
 #include "base/parallel.h"
 #include "tests/support/cells.h"
@@ -12,6 +12,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <atomic>
 #include <thread>
@@ -134,7 +135,6 @@ struct Answers {
     std::map<std::string_view, std::uint64_t> work;
     std::string flaws;
     std::size_t events = 0;
-    std::uint64_t pairs = 0; ///< pairs of the trials
 
     bool operator==(const Answers&) const = default;
 };
@@ -164,9 +164,6 @@ Answers answers(const Scene& scene, const FrameRange& range) {
     all.work = sampler.measurement().work;
     for (const auto& trace : Replays(cell, scene, range).traced(range.size() / 2))
         all.events += trace.events.size();
-    Trials trials({&cell, 1}, scene, range, 4);
-    EXPECT_TRUE(trials.replay(0));
-    all.pairs = trials.pairs();
     return all;
 }
 
@@ -201,8 +198,10 @@ TEST(FrameTimes, ExcludeTheGenerationOfFrames) {
     for (const auto ns : replays.timed([](std::size_t, const FrameResult&) {}).frame_ns)
         EXPECT_LT(ns, making_ns);
     for (const auto ns : replays.instrumented().frame_ns) EXPECT_LT(ns, making_ns);
-    Trials trials({&cell, 1}, scene, range, 2);
-    EXPECT_LT(*trials.replay(0), making_ns);
+    auto chosen = cell;
+    chosen.candidates = {cell};
+    choose(chosen, scene, range, {.seconds = 0, .folder = {}});
+    EXPECT_LT((*chosen.chosen)["seconds"].get<double>() * 1e9, making_ns);
 }
 
 } // namespace

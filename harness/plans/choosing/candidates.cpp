@@ -14,41 +14,23 @@ namespace tandem {
 
 namespace {
 
-/// The given settings with alternatives, and the number of settings that differ from the preset.
-struct Variant {
-    SettingTexts settings;
-    std::size_t changes = 0;
-};
-
-/// The given settings that the algorithm declares.
-SettingTexts declared(const Traversal& traversal, const SettingTexts& given) {
+/// Settings of cells, with the number of those that differ from the preset: the given settings that the
+/// algorithm declares, with every combination of alternatives of the others.
+std::vector<std::pair<std::size_t, SettingTexts>> variants(const Traversal& traversal, const Preset& preset,
+                                                           const SettingTexts& given) {
+    const auto has = [&](std::string_view name) { return given.contains(std::string(name)); };
     SettingTexts own;
-    for (const auto* parameter : traversal.parameters())
-        if (const auto found = given.find(std::string(parameter->name)); found != given.end())
-            own.insert(*found);
-    return own;
-}
-
-bool is_free(const Parameter& parameter, const SettingTexts& given) {
-    return !parameter.alternatives().empty() && !given.contains(std::string(parameter.name))
-           && !given.contains(std::string(parameter.alternative_setting));
-}
-
-/// Every combination of alternatives of the settings that are not given, with the preset's own values.
-std::vector<Variant> variants(const Traversal& traversal, const Preset& preset, const SettingTexts& given) {
-    const auto base = resolve(traversal.parameters(), preset.values, given, traversal.name());
-    std::vector<Variant> all{{given}};
-    for (const auto* parameter : traversal.parameters()) {
-        if (!is_free(*parameter, given)) continue;
-        const std::string name(parameter->name);
-        const auto unchanged = all.size();
-        for (const auto value : parameter->alternatives()) {
-            if (parameter->text(value) == base.text(name)) continue;
-            for (std::size_t i = 0; i < unchanged; ++i) {
-                all.push_back({all[i].settings, all[i].changes + 1});
-                all.back().settings[name] = parameter->text(value);
+    for (const auto* p : traversal.parameters())
+        if (has(p->name)) own.insert(*given.find(std::string(p->name)));
+    const auto base = resolve(traversal.parameters(), preset.values, own, traversal.name());
+    std::vector<std::pair<std::size_t, SettingTexts>> all{{0, own}};
+    for (const auto* p : traversal.parameters()) {
+        const auto unchanged = has(p->name) || has(p->alternative_setting) ? 0 : all.size();
+        for (const auto value : p->alternatives())
+            for (std::size_t i = 0; i < unchanged && p->text(value) != base.text(p->name); ++i) {
+                all.emplace_back(all[i].first + 1, all[i].second);
+                all.back().second[std::string(p->name)] = p->text(value);
             }
-        }
     }
     return all;
 }
@@ -78,45 +60,27 @@ std::string as_run(const Cell& cell) {
     return text;
 }
 
-/// Cells with the number of settings that differ from the preset.
-using Changed = std::vector<std::pair<std::size_t, Cell>>;
-
-/// Adds the variants of one preset that fit the devices. `refusal` receives the first reason for an unfit
-/// one.
-void add_fitting(Changed& cells, const Traversal& traversal, const Preset& preset, const SettingTexts& given,
-                 const DeviceGroup& devices, std::string& refusal) {
-    for (const auto& variant : variants(traversal, preset, declared(traversal, given))) {
-        try {
-            cells.emplace_back(variant.changes, make_cell(traversal, preset, variant.settings, devices));
-        } catch (const InputError& error) {
-            if (refusal.empty()) refusal = error.what();
-        }
-    }
-}
-
-Changed fitting(const Request& request, const SettingTexts& given, const DeviceGroup& devices,
-                std::string& refusal) {
-    auto any = request; // names no algorithm, so that one without the presets is no error
-    any.algorithms.clear();
-    Changed cells;
-    for (const auto* traversal : algorithms())
-        for (const auto* preset : choose_presets(any, *traversal))
-            add_fitting(cells, *traversal, *preset, given, devices, refusal);
-    std::stable_sort(cells.begin(), cells.end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
-    return cells;
-}
-
 } // namespace
 
 std::vector<Cell> candidates(const Request& request, const SettingTexts& given, const DeviceGroup& devices) {
+    auto any = request; // names no algorithm, so that one without the presets is no error
+    any.algorithms.clear();
+    std::vector<std::pair<std::size_t, Cell>> fitting;
     std::string refusal;
+    for (const auto* traversal : algorithms())
+        for (const auto* preset : choose_presets(any, *traversal))
+            for (const auto& [changes, settings] : variants(*traversal, *preset, given)) try {
+                    fitting.emplace_back(changes, make_cell(*traversal, *preset, settings, devices));
+                } catch (const InputError& error) {
+                    if (refusal.empty()) refusal = error.what();
+                }
+    if (fitting.empty()) throw InputError(refusal);
+    std::ranges::stable_sort(fitting, {}, [](const auto& one) { return one.first; });
     std::vector<Cell> chosen;
     std::set<std::string> seen;
-    for (auto& [changes, cell] : fitting(request, given, devices, refusal))
+    for (auto& [changes, cell] : fitting)
         if ((chosen.empty() || same_answer(cell, chosen.front())) && seen.insert(as_run(cell)).second)
             chosen.push_back(std::move(cell));
-    if (chosen.empty()) throw InputError(refusal);
     return chosen;
 }
 

@@ -2,10 +2,12 @@
 #pragma once
 
 #include "harness/plans/cache_folder.h"
-#include "harness/plans/choosing/choice_cache.h"
+#include "harness/plans/cells.h"
 #include "harness/plans/frames.h"
 
+#include <filesystem>
 #include <functional>
+#include <nlohmann/json_fwd.hpp>
 
 namespace tandem {
 
@@ -16,7 +18,7 @@ struct ChoosingOptions {
     double seconds = 10; ///< limit of the replays; preparation may take six times as long
     bool afresh = false; ///< ignore a stored choice
     std::function<bool()> stop = [] { return false; }; ///< before a frame: whether to end with Interrupted
-    std::filesystem::path folder = cache_folder();
+    std::filesystem::path folder = cache_folder();     ///< of choices; empty: nothing is stored
     std::function<void(std::string_view)> progress = [](std::string_view) {}; ///< called with "" at the end
 };
 
@@ -25,5 +27,10 @@ struct ChoosingOptions {
 /// line, and one line for each problem with the file. When every candidate fails, the cell stays equal to the
 /// first, and its measurement reports the failure.
 void choose(Cell& cell, const Scene& scene, const FrameRange& range, const ChoosingOptions& options);
+
+/// Everything that a choice depends on. Devices: models, drivers, memory limits. Scene: numbers of bodies,
+/// tetrahedra and `pairs` (candidate pairs a frame) as powers of 4 rounded down (null: none), and whether
+/// bodies are deformable. Candidates: a digest of all, which includes the settings that the user fixed.
+nlohmann::ordered_json question_of(const Cell& cell, const Scene& scene, std::uint64_t pairs);
 
 } // namespace tandem
