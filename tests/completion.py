@@ -89,7 +89,6 @@ class Completion(Case):
             ("tandem run --set=slabs=th", ["three"]),
             ("tandem run --set slabs=three,a", ["three,all"]),
             ("tandem run --set group_siz", ["group_size="]),
-            ("tandem run --set group_size=", ["128", "256", "64"]),
             ("tandem run pile:bod", ["bodies="]),
             ("tandem view pla", ["plates"]),
             ("tandem report x --scene pla", ["plates"]),

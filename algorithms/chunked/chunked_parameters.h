@@ -20,10 +20,8 @@ enum class Descent {
 
 inline constexpr Setting<std::int64_t> chunk_bytes{"chunk_bytes", 8000, ValueRange{1, std::int64_t{1} << 30},
                                                    "", "memory of a pair of chunks in equation (1)"};
-inline constexpr auto leaves =
-    Setting<std::int64_t>{"leaves", 0, ValueRange{0, 16384}, "",
-                          "tetrahedra per chunk, a power of two; 0: from chunk_bytes"}
-        .with_alternatives({8, 64, 512}, "chunk_bytes");
+inline constexpr Setting<std::int64_t> leaves{"leaves", 0, ValueRange{0, 16384}, "",
+                                              "tetrahedra per chunk, a power of two; 0: from chunk_bytes"};
 inline constexpr Setting<std::int64_t> seed_threshold{
     "seed_threshold", 0, ValueRange{0, std::int64_t{1} << 31}, "SEED_THRESHOLD",
     "chunk pairs per body pair above which seeding climbs a level (the paper's: 1e7); 0: seed_target divided "

@@ -32,13 +32,12 @@ struct Parameter {
     std::size_t word_count = 0;                       ///< 0: integers only
     std::array<std::int64_t, 4> alternative_values{}; ///< the first alternative_count are in use
     std::size_t alternative_count = 0;                ///< at most 4
-    std::string_view alternative_setting;             ///< another setting with the same effect; empty: none
 
     /// The words that are values; empty if only integers are.
     constexpr std::span<const Word> choices() const { return std::span(words).first(word_count); }
     /// Whether integers from least to most are values.
     constexpr bool takes_integers() const { return least != most || word_count == 0; }
-    /// Values that `--algorithm auto` tries for speed when neither this nor alternative_setting is given.
+    /// Values that `--algorithm auto` tries for speed when the setting is not given.
     /// Combinations that change the answer are left out. Empty: only the user sets it.
     constexpr std::span<const std::int64_t> alternatives() const {
         return std::span(alternative_values).first(alternative_count);
@@ -103,10 +102,8 @@ struct Setting : Parameter {
     }
 
     /// The same row with alternatives(), which must be allowed values.
-    consteval Setting with_alternatives(std::initializer_list<T> values,
-                                        std::string_view other_setting = {}) const {
+    consteval Setting with_alternatives(std::initializer_list<T> values) const {
         auto row = *this;
-        row.alternative_setting = other_setting;
         for (const auto value : values) {
             const auto number = static_cast<std::int64_t>(value);
             bool allowed = takes_integers() && number >= least && number <= most;

@@ -204,10 +204,9 @@ inline constexpr Setting<PairLayout> pair_layout{
     "PAIR_LAYOUT",
     "format of a candidate pair on the device: slots: 8 bytes, the slots of two tetrahedra; items: 16 bytes, "
     "as in the published data path and in scenes of more than 2^32 slots"};
-inline constexpr auto group_size =
-    Setting<std::int64_t>{"group_size", 0, ValueRange{0, 1024}, "GROUP_SIZE",
-                          "work-items per work-group (1 on host); 0: 128, on processors 1 if algorithm=tiled"}
-        .with_alternatives({64, 128, 256});
+inline constexpr Setting<std::int64_t> group_size{
+    "group_size", 0, ValueRange{0, 1024}, "GROUP_SIZE",
+    "work-items per work-group (1 on host); 0: 128, on processors 1 if algorithm=tiled"};
 inline constexpr Setting<std::int64_t> work_items{
     "work_items", 2048, ValueRange{1, 1 << 20}, "",
     "work-items per compute unit of kernels with strided loops"};

@@ -157,11 +157,8 @@ void explain_setting(const Traversal& traversal, const Parameter& parameter, con
     put_lines(fmt::format("{:{}}{}", "", indent, parameter.help), indent);
     line(parameter.takes_integers() ? "range" : "choices", values_of(parameter));
     if (const auto values = by_preset(traversal, parameter); !values.empty()) line("presets", values);
-    if (parameter.alternatives().empty()) return;
-    const auto tried = fmt::format("{}", fmt::join(alternatives_of(parameter), ", "));
-    line("auto tries", parameter.alternative_setting.empty()
-                           ? tried
-                           : fmt::format("{}, unless {} is given", tried, parameter.alternative_setting));
+    if (!parameter.alternatives().empty())
+        line("auto tries", fmt::format("{}", fmt::join(alternatives_of(parameter), ", ")));
 }
 
 void explain_algorithm(const Traversal& traversal, bool baseline) {

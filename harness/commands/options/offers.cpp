@@ -80,7 +80,6 @@ Words settings(const LineBefore& before, const std::string& typed) {
             if (equals == std::string::npos) texts.insert(name);
             if (typed.substr(0, equals + 1) != name) continue;
             for (const auto& word : parameter->choices()) texts.emplace(word.text);
-            for (const auto value : parameter->alternatives()) texts.insert(parameter->text(value));
         }
     return {texts.begin(), texts.end()};
 }

@@ -25,7 +25,7 @@ std::vector<std::pair<std::size_t, SettingTexts>> variants(const Traversal& trav
     const auto base = resolve(traversal.parameters(), preset.values, own, traversal.name());
     std::vector<std::pair<std::size_t, SettingTexts>> all{{0, own}};
     for (const auto* p : traversal.parameters()) {
-        const auto unchanged = has(p->name) || has(p->alternative_setting) ? 0 : all.size();
+        const auto unchanged = has(p->name) ? 0 : all.size();
         for (const auto value : p->alternatives())
             for (std::size_t i = 0; i < unchanged && p->text(value) != base.text(p->name); ++i) {
                 all.emplace_back(all[i].first + 1, all[i].second);
