@@ -6,6 +6,8 @@
 #include "algorithms/parameters/table.h"
 #include "backends/cuda/cuda_device.h"
 #include "base/error.h"
+#include "harness/plans/choosing/race.h"
+#include "harness/sampling/statistics.h"
 #include "python/core/device_world.h"
 #include "python/core/signals.h"
 
@@ -242,14 +244,33 @@ Run Collider::run(const Input& input) {
     });
 }
 
+/// Keeps a session of the fastest candidate. Returns all timed ones, the fastest first. Throws InputError
+/// with the first error when all fail.
 template<class Frames>
 std::vector<Trial> Collider::choose_for(const Frames& frames, double seconds) {
-    auto chosen = choose(
-        candidates_, scene_, [&](Session& session) { return run_frame(session, frames, std::nullopt); },
-        seconds);
-    session_ = std::move(chosen.session);
-    algorithm_ = chosen.algorithm->name();
-    return std::move(chosen.trials);
+    std::vector<std::unique_ptr<Session>> sessions(candidates_.size());
+    const auto prepare = [&](std::size_t i) {
+        sessions[i] = candidates_[i].algorithm->prepare(devices_, scene_, candidates_[i].settings);
+    };
+    const auto replay = [&](std::size_t i) -> Replayed {
+        const auto begin = std::chrono::steady_clock::now();
+        const auto result = run_frame(*sessions[i], frames, std::nullopt);
+        const std::chrono::nanoseconds time = std::chrono::steady_clock::now() - begin;
+        return {time.count(), result.count, result.contacts};
+    };
+    Race race(candidates_,
+              {.prepare = prepare, .replay = replay, .free = [&](std::size_t i) { sessions[i].reset(); }});
+    const auto ranking = race.run(seconds);
+    if (ranking.empty()) throw InputError(race.failure(0));
+    const auto best = ranking.front();
+    if (!sessions[best]) prepare(best);
+    session_ = std::move(sessions[best]);
+    algorithm_ = candidates_[best].algorithm->name();
+    std::vector<Trial> trials;
+    for (const auto i : ranking)
+        trials.push_back({std::string(candidates_[i].algorithm->name()), changes(candidates_[i]),
+                          1e-9 * median(race.times(i))});
+    return trials;
 }
 
 std::vector<Trial> Collider::tune(const Input& input, double seconds) {

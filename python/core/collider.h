@@ -2,9 +2,8 @@
 #pragma once
 
 #include "algorithms/traversal.h"
-#include "harness/plans/device_groups.h"
+#include "harness/plans/cells.h"
 #include "harness/verify/oracle/world.h"
-#include "python/core/choosing.h"
 #include "python/core/device_input.h"
 #include "python/core/host_input.h"
 #include "python/core/process.h"
@@ -16,6 +15,13 @@
 #include <optional>
 
 namespace tandem::python {
+
+/// A timed candidate of algorithm="auto".
+struct Trial {
+    std::string algorithm;
+    SettingTexts changes; ///< settings that differ from its preset
+    double seconds = 0;   ///< median time of a frame
+};
 
 /// Options of a collider. `bodies`, `deformable` and `groups` have one entry per body.
 struct ColliderOptions {
