@@ -117,7 +117,7 @@ def checker_of(kind):
 
 def main(names):
     files = [pathlib.Path(name) for name in names] or sorted(
-        [*(ROOT / "results").glob("**/*.jsonl"), *(ROOT / "results").glob("**/*.jsonl.xz")]
+        path for folder in ("results", "tests/records") for path in (ROOT / folder).glob("**/*.jsonl*")
     )
     if not files:
         print("no records are committed yet")
