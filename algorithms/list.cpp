@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/sources.h"
+#include "algorithms/kernels/sources.h"
 #include "algorithms/traversal.h"
 #include "base/digest.h"
 #include "base/error.h"

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Makes sessions from resolved settings: checks them against the devices, and chooses the data path.
 #include "algorithms/bodies/check_input.h"
+#include "algorithms/bodies/cost.h"
 #include "algorithms/bodies/frame_on_device.h"
 #include "algorithms/bodies/origin.h"
 #include "algorithms/bodies/shift.h"
-#include "algorithms/pipeline.h"
+#include "algorithms/pipeline/pipeline.h"
 #include "algorithms/published/published_session.h"
 #include "algorithms/distributed/local_scene.h"
 #include "algorithms/distributed/rank_session.h"
-#include "algorithms/resident_session.h"
+#include "algorithms/pipeline/resident_session.h"
 #include "algorithms/distributed/split_session.h"
 #include "base/error.h"
 
@@ -200,6 +201,17 @@ FrameResult Session::do_run_device_input(const DeviceFrameInput&, std::optional<
 }
 
 void Traversal::do_fit(Settings&, const DeviceInfo&, const Scene*) const {}
+
+std::vector<KernelCost> Traversal::do_costs(const Scene&, const Settings&) const { return {}; }
+
+std::vector<KernelCost> Traversal::costs(const Scene& scene, const Settings& settings) const {
+    const SceneFacts facts(scene, settings);
+    auto all = do_costs(scene, settings);
+    for (const auto& common : {body_costs(facts), broad_costs(facts), contact_costs(facts),
+                               answer_costs(facts), published_costs(facts)})
+        all.insert(all.end(), common.begin(), common.end());
+    return all;
+}
 
 AlgorithmStages Traversal::build(const BuildContext& context) const { return do_build(context); }
 

@@ -2,7 +2,9 @@
 #pragma once
 
 #include "algorithms/answer/frame_result.h"
+#include "algorithms/bodies/body_pair.h"
 #include "algorithms/bodies/frame_input.h"
+#include "algorithms/kernels/counter.h"
 #include "algorithms/parameters/parameter.h"
 #include "backends/device.h"
 #include "scenes/scene.h"
@@ -15,20 +17,11 @@
 
 namespace tandem {
 
-class Bodies;        // bodies/bodies.h
-class Ranks;         // backends/ranks.h
-struct BuildContext; // stages.h
-struct KernelCost;   // cost.h
-struct AlgorithmStages;
-
-/// Two bodies whose volumes may overlap, or a body and itself; a <= b.
-struct BodyPair {
-    std::uint32_t a = 0; ///< index into Scene::bodies
-    std::uint32_t b = 0; ///< index into Scene::bodies
-
-    /// Orders by a, then b.
-    auto operator<=>(const BodyPair&) const = default;
-};
+class Bodies;           // bodies/bodies.h
+class Ranks;            // backends/ranks.h
+struct BuildContext;    // bodies/build_context.h
+struct KernelCost;      // bodies/cost.h
+struct AlgorithmStages; // pipeline/stages.h
 
 /// A scene prepared on its devices for one algorithm and one set of settings: uploaded and compiled. All work
 /// in run() is measured, and no work before it. Every function may throw DeviceError; the session remains
@@ -150,23 +143,6 @@ private:
     std::shared_ptr<const Scene> centred_; ///< what the devices have in its place; null: the same
 };
 
-/// A named counter of an algorithm's work.
-struct Counter {
-    /// How the values of several frames make one: their sum, or the value of the last.
-    enum class Total { sum, last };
-
-    std::string_view name;    ///< key in FrameResult::work and in records
-    std::string_view unit;    ///< "bytes", or the things that are counted
-    std::string_view meaning; ///< one line
-    Total total = Total::sum; ///< over frames
-};
-
-/// Work-groups of launches.
-struct LaunchShape {
-    std::uint32_t group_size = 1; ///< work-items per group
-    std::uint32_t groups = 1;     ///< for kernels with strided loops
-};
-
 /// The settings with the contact rule and the decision to rely on, where neither is given.
 SettingTexts with_reliable_contacts(SettingTexts given);
 
@@ -211,7 +187,7 @@ public:
     std::unique_ptr<Session> prepare(Device& device, const Scene& scene, const Settings& settings,
                                      Ranks& ranks) const;
 
-    /// The cost models, by entry point, of all kernels of a frame with these fitted settings (cost.h).
+    /// The cost models, by entry point, of all kernels of a frame with these fitted settings (bodies/cost.h).
     std::vector<KernelCost> costs(const Scene& scene, const Settings& settings) const;
 
     /// Builds the algorithm's own stages of a frame, for pipelines. Throws OutOfMemory or DeviceError.

@@ -25,7 +25,7 @@ function(tandem_cubql target folder)
     DEPENDS ${from}/build.cu ${from}/build.h COMMENT "Compiling cuBQL's builder" VERBATIM)
   add_custom_command(OUTPUT ${out}/query.ptx
     COMMAND ${nvcc} -ptx ${from}/query.cu -o ${out}/query.ptx
-    DEPENDS ${from}/query.cu ${from}/build.h ${PROJECT_SOURCE_DIR}/algorithms/answer/status.clh COMMENT "Compiling queries of cuBQL" VERBATIM)
+    DEPENDS ${from}/query.cu ${from}/build.h ${PROJECT_SOURCE_DIR}/algorithms/kernels/status.clh COMMENT "Compiling queries of cuBQL" VERBATIM)
   file(CONFIGURE OUTPUT ${out}/query_ptx.cpp @ONLY CONTENT [=[
 extern const char tandem_query_ptx[];
 __asm__(".pushsection .rodata\ntandem_query_ptx: .incbin \"@out@/query.ptx\"\n.byte 0\n.popsection\n");

@@ -61,7 +61,7 @@ def table_code(row, names, function, own):
 
 
 def sources(kernels, own):
-    out = ['#include "algorithms/sources.h"', "namespace tandem {", "namespace {"]
+    out = ['#include "algorithms/kernels/sources.h"', "namespace tandem {", "namespace {"]
     for index, kernel in enumerate(kernels):
         out.append(
             f'constexpr KernelSource source_{index}{{"{kernel.name}",\nR"KERNEL({kernel.text})KERNEL"}};'

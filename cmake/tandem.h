@@ -3,7 +3,7 @@
 // Installed as <tandem/tandem.h>.
 #pragma once
 
-#include <tandem/algorithms/device_frame.h>
+#include <tandem/algorithms/bodies/device_frame.h>
 #include <tandem/algorithms/parameters/table.h>
 #include <tandem/algorithms/traversal.h>
 #include <tandem/backends/cuda/cuda_device.h>

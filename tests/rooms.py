@@ -42,6 +42,15 @@ class Rules:
             for row in of_page["From", "To"]
         }
         self.elsewhere = {words(row[0])[0] for row in of_page["Header", "Found in"]}
+        # Number of the step of each folder or file of a room.
+        self.steps = {
+            words(row[0])[0]: {
+                name.strip("`"): number
+                for number, step in enumerate(row[1].split())
+                for name in step.split("/")
+            }
+            for row in of_page["Room with steps", "Steps"]
+        }
         self.namespaces = {
             (name, words(row[1])[0]) for row in of_page["Namespace", "In"] for name in words(row[0])
         }
@@ -58,7 +67,7 @@ class Rules:
             if room not in self.rooms:
                 return f"folder {room} is no room of {PAGE}"
         if own == other:
-            return ""
+            return self.error_in_room(own, path, target)
         if other not in self.rooms[own]:
             return f"room {own} must not include room {other}"
         only, never = self.limits.get((own, other), ((), ()))
@@ -67,6 +76,18 @@ class Rules:
         if any(map(names, never)) or only and not any(map(names, only)):
             return f"room {own} must not include {inner} of room {other}"
         return ""
+
+    def error_in_room(self, room, path, target):
+        """Why the file must not include the other one of its room; empty if it may."""
+        if room not in self.steps:
+            return ""
+        own, other = (file[len(room) + 1 :].partition("/")[0] for file in (path, target))
+        for name in (own, other):
+            if name not in self.steps[room]:
+                return f"{name} has no step in room {room}"
+        if own == other or self.steps[room][other] < self.steps[room][own]:
+            return ""
+        return f"{own} must not include {other}, which does not stand before it in room {room}"
 
     def is_namespace(self, path, name):
         """Whether a file may open the namespace `name`, which stands inside `tandem`."""
@@ -152,6 +173,10 @@ class Rooms(unittest.TestCase):
             self.assertIn(other, rules.rooms[own])
             for entry in (*only, *never):
                 self.assertTrue((SOURCE / other / entry).exists(), f"{other}/{entry}")
+        self.assertEqual(set(rules.steps), {"algorithms"})
+        for room, steps in rules.steps.items():
+            files = {path.name for path in (SOURCE / room).iterdir()} - {"README.md", "CMakeLists.txt"}
+            self.assertEqual(set(steps), files, f"steps of {room}")
 
 
 class Mistakes(unittest.TestCase):
@@ -200,6 +225,23 @@ class Mistakes(unittest.TestCase):
             self.errors('#include "base/nothing.h"\n'), ["geometry/new.h:1: no file base/nothing.h"]
         )
         self.assertEqual(self.errors('#include "base/*.clh"\n'), ["geometry/new.h:1: no file base/*.clh"])
+
+    def test_an_include_against_the_order_fails(self):
+        self.assertEqual(self.errors('#include "algorithms/traversal.h"\n', "algorithms/tiled/new.h"), [])
+        self.assertEqual(self.errors('#include "turns.h"\n', "algorithms/tiled/new.h"), [])
+        against = "which does not stand before it in room algorithms"
+        self.assertEqual(
+            self.errors('#include "algorithms/tiled/turns.h"\n', "algorithms/traversal.h"),
+            [f"algorithms/traversal.h:1: traversal.h must not include tiled, {against}"],
+        )
+        self.assertEqual(
+            self.errors('#include "algorithms/tiled/turns.h"\n', "algorithms/chunked/new.h"),
+            [f"algorithms/chunked/new.h:1: chunked must not include tiled, {against}"],
+        )
+        self.assertEqual(
+            self.errors('#include "algorithms/traversal.h"\n', "algorithms/other/new.h"),
+            ["algorithms/other/new.h:1: other has no step in room algorithms"],
+        )
 
     def test_namespaces(self):
         self.assertEqual(

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Cost models of the kernels in digest.cl and sort.cl.
-#include "algorithms/cost.h"
+#include "algorithms/bodies/cost.h"
 
 namespace tandem {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/answer/answers.h"
 
+#include "algorithms/answer/contact_digest.h"
 #include "algorithms/answer/digest.h"
 #include "algorithms/answer/order_stage.h"
-#include "algorithms/narrow_phase/reference.h"
 #include "algorithms/parameters/table.h"
-#include "algorithms/sources.h"
+#include "algorithms/kernels/sources.h"
 #include "base/parallel.h"
 
 #include <algorithm>

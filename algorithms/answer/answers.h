@@ -5,8 +5,8 @@
 #include "algorithms/answer/frame_result.h"
 #include "algorithms/answer/growable_buffer.h"
 #include "algorithms/bodies/bodies.h"
-#include "algorithms/narrow_phase/digest_contacts.cl.h"
-#include "algorithms/traversal.h"
+#include "algorithms/answer/digest_contacts.cl.h"
+#include "algorithms/kernels/launch_shape.h"
 
 namespace tandem {
 
@@ -21,9 +21,6 @@ enum ContactColumn : std::size_t {
     contact_ids,   ///< 2 words: pair, feature
     contact_values ///< 8 reals: point, normal, depth, padding
 };
-
-/// PAIR_WORDS of pairs.clh.
-constexpr std::size_t words_of(PairLayout layout) { return layout == PairLayout::slots ? 2 : 4; }
 
 /// Kernels for digests, counts and downloads of pairs and contacts, with the bodies they refer to. A session
 /// and its results own it together.

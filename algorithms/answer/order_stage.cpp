@@ -2,7 +2,7 @@
 #include "algorithms/answer/order_stage.h"
 
 #include "algorithms/parameters/table.h"
-#include "algorithms/sources.h"
+#include "algorithms/kernels/sources.h"
 #include "backends/upload.h"
 #include "base/error.h"
 

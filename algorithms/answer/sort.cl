@@ -6,7 +6,7 @@
 // Host variants: PRECISION
 #include "backends/portable.h"
 #include "algorithms/answer/pairs.clh"
-#include "algorithms/answer/parts.clh"
+#include "algorithms/kernels/parts.clh"
 
 // Rows in a buffer of `capacity` rows with a 64-bit counter.
 DEVICE uint rows_in(GLOBAL const uint* counter, uint capacity) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/answer/status.clh"
+#include "algorithms/kernels/status.clh"
 #include "backends/device.h"
 
 #include <array>

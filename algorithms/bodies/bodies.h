@@ -3,8 +3,8 @@
 
 #include "algorithms/bodies/frame_input.h"
 #include "algorithms/bounds/geometry.h"
-#include "algorithms/hierarchy/order.h"
-#include "algorithms/distributed/subdomain.h"
+#include "algorithms/orders/order.h"
+#include "algorithms/bodies/subdomain.h"
 #include "scenes/scene.h"
 #include "backends/lanes.h"
 

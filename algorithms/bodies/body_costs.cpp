@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Cost models of the kernels in pack_frame.cl that a frame in the host's memory needs.
-#include "algorithms/cost.h"
+#include "algorithms/bodies/cost.h"
 
 namespace tandem {
 

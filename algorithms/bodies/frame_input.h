@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/device_frame.h"
+#include "algorithms/bodies/device_frame.h"
 #include "base/error.h"
 #include "scenes/scene.h"
 

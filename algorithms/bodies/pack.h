@@ -2,7 +2,7 @@
 #pragma once
 
 #include "algorithms/bounds/geometry.h"
-#include "algorithms/hierarchy/order.h"
+#include "algorithms/orders/order.h"
 #include "scenes/scene.h"
 
 #include <cstddef>

@@ -4,7 +4,7 @@
 // were at the origin, so that later kernels get finite numbers. The host then rejects the frame.
 // Host variants: PRECISION
 #include "backends/portable.h"
-#include "algorithms/answer/status.clh"
+#include "algorithms/kernels/status.clh"
 #include "algorithms/bodies/body.clh"
 
 #if defined(__OPENCL_C_VERSION__) && PRECISION == 32

@@ -2,7 +2,7 @@
 #include "algorithms/bodies/pack_stage.h"
 
 #include "algorithms/bodies/range.h"
-#include "algorithms/sources.h"
+#include "algorithms/kernels/sources.h"
 #include "backends/upload.h"
 #include "base/error.h"
 

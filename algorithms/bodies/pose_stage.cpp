@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/bodies/pose_stage.h"
 
-#include "algorithms/sources.h"
+#include "algorithms/kernels/sources.h"
 #include "backends/upload.h"
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 
 #include "algorithms/bodies/bodies.h"
 #include "algorithms/bodies/pack_frame.cl.h"
-#include "algorithms/stages.h"
+#include "algorithms/kernels/launch_shape.h"
 
 #include <memory>
 

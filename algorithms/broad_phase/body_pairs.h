@@ -3,9 +3,10 @@
 
 #include "algorithms/answer/growable_buffer.h"
 #include "algorithms/answer/status.h"
+#include "algorithms/bodies/build_context.h"
 #include "algorithms/broad_phase/broad.h"
 #include "algorithms/broad_phase/broad_stage.h"
-#include "algorithms/stages.h"
+#include "algorithms/hierarchy/hierarchy.h"
 
 #include <memory>
 #include <optional>

@@ -7,8 +7,8 @@
 #include "backends/portable.h"
 #include "algorithms/broad_phase/filters.clh"
 #include "algorithms/broad_phase/tile.clh"
-#include "algorithms/answer/status.clh"
-#include "algorithms/bodies/rows.clh"
+#include "algorithms/kernels/status.clh"
+#include "algorithms/kernels/rows.clh"
 #include "algorithms/bounds/volume.clh"
 
 #ifndef SELF

@@ -3,7 +3,7 @@
 
 #include "algorithms/bodies/ball.h"
 #include "algorithms/bounds/geometry.h"
-#include "algorithms/traversal.h"
+#include "algorithms/bodies/body_pair.h"
 
 namespace tandem {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Cost models of the kernels in broad.cl.
-#include "algorithms/cost.h"
+#include "algorithms/bodies/cost.h"
 
 namespace tandem {
 

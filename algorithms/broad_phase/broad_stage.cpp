@@ -6,7 +6,7 @@
 #include "algorithms/bodies/ball.h"
 #include "algorithms/bodies/self_pairs.h"
 #include "algorithms/parameters/table.h"
-#include "algorithms/sources.h"
+#include "algorithms/kernels/sources.h"
 #include "base/error.h"
 
 #include <algorithm>

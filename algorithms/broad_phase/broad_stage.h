@@ -3,8 +3,8 @@
 
 #include "algorithms/bodies/bodies.h"
 #include "algorithms/broad_phase/broad.cl.h"
-#include "algorithms/distributed/subdomain.h"
-#include "algorithms/traversal.h"
+#include "algorithms/bodies/subdomain.h"
+#include "algorithms/bodies/build_context.h"
 
 namespace tandem {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/traversal.h"
+#include "algorithms/bodies/body_pair.h"
 
 #include <span>
 

@@ -3,9 +3,9 @@
 
 #include "algorithms/chunked/chunked_walker.h"
 #include "algorithms/chunked/levels.clh"
-#include "algorithms/published/chunked_seeds.h"
-#include "algorithms/cost.h"
-#include "algorithms/pipeline.h"
+#include "algorithms/chunked/published_seeds.h"
+#include "algorithms/bodies/cost.h"
+#include "algorithms/pipeline/pipeline.h"
 #include "base/error.h"
 
 #include <bit>

@@ -3,7 +3,7 @@
 
 #include "algorithms/bodies/self_pairs.h"
 #include "algorithms/chunked/levels.clh"
-#include "algorithms/sources.h"
+#include "algorithms/kernels/sources.h"
 
 #include <algorithm>
 #include <map>

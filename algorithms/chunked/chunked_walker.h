@@ -6,7 +6,7 @@
 #include "algorithms/chunked/chunked_parameters.h"
 #include "algorithms/chunked/seeds.cl.h"
 #include "algorithms/hierarchy/chunk_trees.h"
-#include "algorithms/stages.h"
+#include "algorithms/pipeline/stages.h"
 
 namespace tandem {
 

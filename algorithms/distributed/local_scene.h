@@ -2,7 +2,7 @@
 #pragma once
 
 #include "algorithms/answer/frame_result.h"
-#include "algorithms/distributed/subdomain.h"
+#include "algorithms/bodies/subdomain.h"
 #include "scenes/scene.h"
 
 namespace tandem {

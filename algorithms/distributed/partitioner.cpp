@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/distributed/partitioner.h"
 
-#include "algorithms/hierarchy/order.h"
+#include "algorithms/orders/order.h"
 #include "base/parallel.h"
 
 #include <algorithm>

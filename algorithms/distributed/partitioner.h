@@ -3,7 +3,7 @@
 
 #include "algorithms/broad_phase/broad.h"
 #include "algorithms/distributed/displacement_tracker.h"
-#include "algorithms/distributed/subdomain.h"
+#include "algorithms/bodies/subdomain.h"
 
 namespace tandem {
 

@@ -3,7 +3,7 @@
 
 #include "algorithms/distributed/ghost_exchange.h"
 #include "algorithms/distributed/device_vertex_exchange.h"
-#include "algorithms/resident_session.h"
+#include "algorithms/pipeline/resident_session.h"
 #include "algorithms/distributed/repartition_loop.h"
 
 namespace tandem {

@@ -2,7 +2,7 @@
 #include "algorithms/distributed/split_session.h"
 
 #include "algorithms/parameters/table.h"
-#include "algorithms/resident_session.h"
+#include "algorithms/pipeline/resident_session.h"
 #include "algorithms/distributed/repartition_loop.h"
 #include "base/parallel.h"
 

@@ -5,7 +5,7 @@
 #include "backends/portable.h"
 #include "algorithms/broad_phase/body_pairs.clh"
 #include "algorithms/gproximity/queues.clh"
-#include "algorithms/hierarchy/heap.clh"
+#include "algorithms/orders/heap.clh"
 
 DEVICE void copy_item(GLOBAL uint* to, GLOBAL const uint* from) {
     to[0] = from[0];

@@ -2,9 +2,9 @@
 #include "algorithms/traversal.h"
 
 #include "algorithms/gproximity/queue_walker.h"
-#include "algorithms/cost.h"
-#include "algorithms/pipeline.h"
-#include "algorithms/published/queue_words.h"
+#include "algorithms/bodies/cost.h"
+#include "algorithms/pipeline/pipeline.h"
+#include "algorithms/gproximity/published_queues.h"
 #include "base/error.h"
 
 #include <algorithm>

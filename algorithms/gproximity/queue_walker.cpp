@@ -2,7 +2,7 @@
 #include "algorithms/gproximity/queue_walker.h"
 
 #include "algorithms/gproximity/queues.clh"
-#include "algorithms/sources.h"
+#include "algorithms/kernels/sources.h"
 #include "base/error.h"
 #include "base/memory.h"
 

@@ -6,7 +6,7 @@
 #include "algorithms/gproximity/gproximity.cl.h"
 #include "algorithms/gproximity/gproximity_settings.h"
 #include "algorithms/hierarchy/chunk_trees.h"
-#include "algorithms/stages.h"
+#include "algorithms/pipeline/stages.h"
 
 namespace tandem {
 

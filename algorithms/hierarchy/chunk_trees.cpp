@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/hierarchy/chunk_trees.h"
 
-#include "algorithms/hierarchy/heap.h"
-#include "algorithms/sources.h"
+#include "algorithms/orders/heap.h"
+#include "algorithms/kernels/sources.h"
 #include "backends/upload.h"
 
 #include <algorithm>

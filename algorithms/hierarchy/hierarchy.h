@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/distributed/subdomain.h"
+#include "algorithms/bodies/subdomain.h"
 #include "backends/device.h"
 #include "scenes/scene.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/hierarchy/levels.h"
 
-#include "algorithms/hierarchy/heap.h"
+#include "algorithms/orders/heap.h"
 
 #include <algorithm>
 #include <bit>

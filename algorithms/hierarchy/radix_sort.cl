@@ -4,7 +4,7 @@
 // rows in order. No group waits for another.
 // Host variants: PRECISION
 #include "backends/portable.h"
-#include "algorithms/answer/parts.clh"
+#include "algorithms/kernels/parts.clh"
 
 #define RADIX_BITS 8
 #define DIGITS (1u << RADIX_BITS)

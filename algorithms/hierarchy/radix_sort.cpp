@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/hierarchy/radix_sort.h"
 
-#include "algorithms/sources.h"
+#include "algorithms/kernels/sources.h"
 
 #include <algorithm>
 

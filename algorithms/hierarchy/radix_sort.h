@@ -2,7 +2,7 @@
 #pragma once
 
 #include "algorithms/hierarchy/radix_sort.cl.h"
-#include "algorithms/traversal.h"
+#include "algorithms/kernels/launch_shape.h"
 
 namespace tandem {
 

@@ -6,7 +6,7 @@
 // transformed vertices. Inner nodes are the exact min/max of their children.
 // Host variants: AXES K PRECISION
 #include "backends/portable.h"
-#include "algorithms/bounds/leaf.clh"
+#include "algorithms/bodies/leaf.clh"
 #include "algorithms/hierarchy/node.clh"
 
 // Capacity of a work-group in nodes: a power of two, at least one strip for each of its teams.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Cost floors of refit.cl and refit_tiles.cl: moving bodies only, all launches of a frame together.
-#include "algorithms/cost.h"
+#include "algorithms/bodies/cost.h"
 #include "algorithms/hierarchy/chunk_trees.h"
 #include "backends/lanes.h"
 

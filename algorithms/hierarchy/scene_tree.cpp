@@ -2,8 +2,8 @@
 #include "algorithms/hierarchy/scene_tree.h"
 
 #include "algorithms/bodies/self_pairs.h"
-#include "algorithms/hierarchy/heap.h"
-#include "algorithms/sources.h"
+#include "algorithms/orders/heap.h"
+#include "algorithms/kernels/sources.h"
 
 #include <algorithm>
 #include <numeric>

@@ -2,7 +2,7 @@
 #include "algorithms/hierarchy/tile_trees.h"
 
 #include "algorithms/bodies/self_pairs.h"
-#include "algorithms/sources.h"
+#include "algorithms/kernels/sources.h"
 #include "backends/upload.h"
 
 #include <algorithm>

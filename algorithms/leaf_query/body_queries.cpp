@@ -2,7 +2,7 @@
 #include "algorithms/leaf_query/body_queries.h"
 
 #include "algorithms/hierarchy/queries.h"
-#include "algorithms/sources.h"
+#include "algorithms/kernels/sources.h"
 
 #include <algorithm>
 

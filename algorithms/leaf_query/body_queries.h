@@ -3,7 +3,7 @@
 
 #include "algorithms/hierarchy/chunk_trees.h"
 #include "algorithms/leaf_query/body_query.cl.h"
-#include "algorithms/walker.h"
+#include "algorithms/pipeline/walker.h"
 
 namespace tandem {
 

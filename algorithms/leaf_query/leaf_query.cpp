@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/traversal.h"
 
-#include "algorithms/cost.h"
+#include "algorithms/bodies/cost.h"
 #include "algorithms/leaf_query/body_queries.h"
 #include "algorithms/leaf_query/leaf_query_parameters.h"
 #include "algorithms/leaf_query/scene_queries.h"
-#include "algorithms/pipeline.h"
+#include "algorithms/pipeline/pipeline.h"
 
 namespace tandem {
 

@@ -2,7 +2,7 @@
 #include "algorithms/leaf_query/scene_queries.h"
 
 #include "algorithms/broad_phase/filters.h"
-#include "algorithms/sources.h"
+#include "algorithms/kernels/sources.h"
 
 #include <algorithm>
 

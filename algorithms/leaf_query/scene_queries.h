@@ -4,7 +4,7 @@
 #include "algorithms/hierarchy/scene_tree.h"
 #include "algorithms/leaf_query/partner_lists.h"
 #include "algorithms/leaf_query/scene_query.cl.h"
-#include "algorithms/walker.h"
+#include "algorithms/pipeline/walker.h"
 
 namespace tandem {
 

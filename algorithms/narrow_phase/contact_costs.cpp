@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Cost floors of this folder's kernels. Tests of two tetrahedra are not comparisons of slabs, so operations
 // are not counted.
-#include "algorithms/cost.h"
+#include "algorithms/bodies/cost.h"
 
 namespace tandem {
 

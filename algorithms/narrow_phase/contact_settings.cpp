@@ -2,19 +2,12 @@
 #include "algorithms/narrow_phase/contact_settings.h"
 
 #include "algorithms/bounds/geometry.h"
-#include "algorithms/pipeline.h"
+#include "algorithms/parameters/table.h"
 
 #include <algorithm>
 #include <cstdlib>
 
 namespace tandem {
-
-Walked walked_of(const Settings& settings) {
-    const bool leaves_out = settings[parameters::output] == Output::contacts
-                            && boundaries_needed(settings[parameters::contact_rule]) == 2
-                            && !is_published(settings);
-    return leaves_out ? Walked::boundary : Walked::all;
-}
 
 namespace {
 

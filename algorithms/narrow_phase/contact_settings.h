@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/hierarchy/order.h"
+#include "algorithms/orders/order.h"
 #include "algorithms/parameters/contact_rules.clh"
 #include "algorithms/parameters/table.h"
 
@@ -21,22 +21,6 @@ struct ContactSettings {
     bool operator==(const ContactSettings&) const = default;
 };
 
-/// The traits of a rule, a sum of those of contact_rules.clh; 0 for none.
-constexpr unsigned traits_of(ContactRule rule) {
-    constexpr unsigned traits[] = {
-#define TANDEM_TRAITS(word, traits, help) traits,
-        TANDEM_CONTACT_RULES(TANDEM_TRAITS)
-#undef TANDEM_TRAITS
-            0};
-    return traits[static_cast<unsigned>(rule)];
-}
-
-/// Number of the two tetrahedra of a pair that must have boundary faces for the rule to make contacts.
-constexpr unsigned boundaries_needed(ContactRule rule) {
-    const unsigned traits = traits_of(rule);
-    return (traits & TANDEM_BOTH_BOUNDARY) != 0 ? 2 : (traits & TANDEM_ONE_BOUNDARY) != 0 ? 1 : 0;
-}
-
 /// Whether kernels that compute in double decide pairs, all or those without a certificate, before contacts
 /// are made.
 constexpr bool has_verdicts(DecisionPrecision decision) {
@@ -47,10 +31,6 @@ constexpr bool has_verdicts(DecisionPrecision decision) {
 constexpr const char* decided_define(DecisionPrecision decision, bool by_verdicts) {
     return decision == DecisionPrecision::none ? "2" : by_verdicts ? "1" : "0";
 }
-
-/// The tetrahedra that sessions with these settings walk. With output=contacts, a rule whose contacts need
-/// boundary faces of both tetrahedra leaves out the others. residency=published walks everything.
-Walked walked_of(const Settings& settings);
 
 /// Whether `settings` give the same contacts for every k for which this is true: output=contacts, with
 /// decision=exact and bounds that miss no pair that meets. The README of this folder has the proof. Throws

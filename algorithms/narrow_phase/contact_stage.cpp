@@ -2,7 +2,7 @@
 #include "algorithms/narrow_phase/contact_stage.h"
 
 #include "algorithms/narrow_phase/open_pairs.clh"
-#include "algorithms/sources.h"
+#include "algorithms/kernels/sources.h"
 
 #include <algorithm>
 

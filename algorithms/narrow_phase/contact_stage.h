@@ -7,7 +7,7 @@
 #include "algorithms/narrow_phase/certify.cl.h"
 #include "algorithms/narrow_phase/contacts.cl.h"
 #include "algorithms/narrow_phase/decision_stage.h"
-#include "algorithms/expected_groups.h"
+#include "algorithms/kernels/expected_groups.h"
 #include "algorithms/narrow_phase/separate.cl.h"
 
 #include <memory>

@@ -2,8 +2,8 @@
 #include "algorithms/narrow_phase/decision_stage.h"
 
 #include "geometry/meet_exactly.h"
-#include "algorithms/sources.h"
-#include "algorithms/answer/status.clh"
+#include "algorithms/kernels/sources.h"
+#include "algorithms/kernels/status.clh"
 
 namespace tandem {
 

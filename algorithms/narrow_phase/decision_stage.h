@@ -7,7 +7,7 @@
 #include "algorithms/bodies/bodies.h"
 #include "algorithms/narrow_phase/filter.cl.h"
 #include "algorithms/narrow_phase/recheck.cl.h"
-#include "algorithms/traversal.h"
+#include "algorithms/kernels/launch_shape.h"
 
 namespace tandem {
 

@@ -135,4 +135,23 @@ enum class DecisionPrecision {
     usual    ///< recheck, exact or fp32, chosen by motion and device before kernels are compiled
 };
 
+/// The traits of a rule, a sum of those of contact_rules.clh; 0 for none.
+constexpr unsigned traits_of(ContactRule rule) {
+    constexpr unsigned traits[] = {
+#define TANDEM_TRAITS(word, traits, help) traits,
+        TANDEM_CONTACT_RULES(TANDEM_TRAITS)
+#undef TANDEM_TRAITS
+            0};
+    return traits[static_cast<unsigned>(rule)];
+}
+
+/// Number of the two tetrahedra of a pair that must have boundary faces for the rule to make contacts.
+constexpr unsigned boundaries_needed(ContactRule rule) {
+    const unsigned traits = traits_of(rule);
+    return (traits & TANDEM_BOTH_BOUNDARY) != 0 ? 2 : (traits & TANDEM_ONE_BOUNDARY) != 0 ? 1 : 0;
+}
+
+/// PAIR_WORDS of pairs.clh.
+constexpr std::size_t words_of(PairLayout layout) { return layout == PairLayout::slots ? 2 : 4; }
+
 } // namespace tandem

@@ -219,3 +219,18 @@ inline constexpr Setting<std::int64_t> contact_capacity{
     "contact_capacity", 1048576, ValueRange{1, word_limit}, "", "initial capacity for contacts"};
 
 } // namespace tandem::parameters
+
+namespace tandem {
+
+/// Whether these settings select the paper's data path.
+inline bool is_published(const Settings& settings) {
+    return settings.has(parameters::residency) && settings[parameters::residency] == Residency::published;
+}
+
+/// Whether a session walks a part of a frame's body pairs (first_body_pair, most_body_pairs).
+inline bool walks_part(const Settings& settings) {
+    return settings.has(parameters::first_body_pair)
+           && (settings[parameters::first_body_pair] != 0 || settings[parameters::most_body_pairs] != 0);
+}
+
+} // namespace tandem

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Cost floor of transform.cl.
-#include "algorithms/cost.h"
+#include "algorithms/bodies/cost.h"
 
 namespace tandem {
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "algorithms/kernels/launch_shape.h"
 #include "algorithms/hierarchy/hierarchy.h"
 #include "algorithms/published/conversion.h"
 #include "algorithms/published/transform.cl.h"

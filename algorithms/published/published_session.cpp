@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/published/published_session.h"
 
-#include "algorithms/batches.h"
-#include "algorithms/pipeline.h"
+#include "algorithms/pipeline/batches.h"
+#include "algorithms/pipeline/pipeline.h"
 #include "algorithms/published/published_frame.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/tiled/tile_groups.h"
 
-#include "algorithms/pipeline.h"
+#include "algorithms/pipeline/pipeline.h"
 #include "algorithms/tiled/tile_pairs.clh"
 #include "algorithms/tiled/tiled_parameters.h"
 #include "backends/lanes.h"

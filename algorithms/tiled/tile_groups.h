@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/cost.h"
+#include "algorithms/kernels/launch_shape.h"
+#include "algorithms/bodies/cost.h"
 #include "algorithms/parameters/table.h"
 #include "algorithms/traversal.h"
 

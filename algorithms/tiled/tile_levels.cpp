@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/tiled/tile_levels.h"
 
-#include "algorithms/sources.h"
+#include "algorithms/kernels/sources.h"
 #include "algorithms/tiled/tile_pairs.clh"
 #include "algorithms/tiled/tiled_parameters.h"
 #include "base/error.h"

@@ -2,11 +2,11 @@
 #pragma once
 
 #include "algorithms/answer/growable_buffer.h"
-#include "algorithms/expected_groups.h"
+#include "algorithms/kernels/expected_groups.h"
 #include "algorithms/hierarchy/tile_trees.h"
-#include "algorithms/stages.h"
+#include "algorithms/pipeline/stages.h"
 #include "algorithms/tiled/tiled.cl.h"
-#include "algorithms/walker.h"
+#include "algorithms/pipeline/walker.h"
 
 #include <optional>
 

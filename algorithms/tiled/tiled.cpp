@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/traversal.h"
 
-#include "algorithms/cost.h"
-#include "algorithms/pipeline.h"
+#include "algorithms/bodies/cost.h"
+#include "algorithms/pipeline/pipeline.h"
 #include "algorithms/tiled/tile_groups.h"
 #include "algorithms/tiled/tiled_parameters.h"
 #include "algorithms/tiled/tiled_walker.h"

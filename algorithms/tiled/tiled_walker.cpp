@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/tiled/tiled_walker.h"
 
-#include "algorithms/sources.h"
+#include "algorithms/kernels/sources.h"
 
 namespace tandem {
 

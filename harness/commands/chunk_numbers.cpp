@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/commands/chunk_numbers.h"
 
-#include "algorithms/hierarchy/order.h"
+#include "algorithms/orders/order.h"
 
 namespace tandem {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/hierarchy/levels.h"
-#include "algorithms/hierarchy/order.h"
+#include "algorithms/orders/order.h"
 #include "algorithms/parameters/table.h"
 #include "harness/commands/commands.h"
 #include "harness/commands/chunk_numbers.h"

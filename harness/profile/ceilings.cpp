@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "harness/profile/ceilings.h"
 
-#include "algorithms/bounds/ceilings.cl.h"
+#include "algorithms/hierarchy/ceilings.cl.h"
 #include "algorithms/bounds/geometry.h"
-#include "algorithms/sources.h"
+#include "algorithms/kernels/sources.h"
 #include "harness/record/record.h"
 #include "harness/sampling/statistics.h"
 

@@ -2,7 +2,7 @@
 // The time that the kernels of a cell took, and the floor below which they cannot get.
 #pragma once
 
-#include "algorithms/cost.h"
+#include "algorithms/bodies/cost.h"
 #include "harness/profile/limits.h"
 #include "harness/sampling/measurement.h"
 #include "harness/sampling/statistics.h"
@@ -31,7 +31,7 @@ struct KernelProfile {
     KernelSample sample; ///< sum over the frames of the last replay
     double launches = 0;
     double time_fraction = 0;                ///< fraction of the device time of all kernels
-    std::optional<double> bytes, operations; ///< declared costs (algorithms/cost.h)
+    std::optional<double> bytes, operations; ///< declared costs (algorithms/bodies/cost.h)
     std::string_view how;                    ///< how the declared costs are counted; empty: none declared
     Floor floor;
 

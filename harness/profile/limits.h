@@ -12,7 +12,7 @@ struct Limits {
     double bytes_per_s = 0;        ///< device memory: the better of read and copy (read plus written)
     double cached_bytes_per_s = 0; ///< read from the cache
     double cached_bytes = 0;       ///< buffer size of that measurement: fewer bytes may all fit the cache
-    double operations_per_s = 0;   ///< comparisons of slab bounds (algorithms/cost.h)
+    double operations_per_s = 0;   ///< comparisons of slab bounds (algorithms/bodies/cost.h)
     double launch_s = 0;           ///< an empty launch, by the clock that times kernels
 };
 

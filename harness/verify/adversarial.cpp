@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/verify/adversarial.h"
 
-#include "algorithms/hierarchy/pair_list.h"
+#include "algorithms/answer/pair_list.h"
 #include "geometry/contact_truth.h"
 #include "harness/verify/oracle/frame_truth.h"
 #include "base/parallel.h"

@@ -51,7 +51,7 @@ struct AdversarialTally {
 };
 
 /// Generates pairs of a family, tests them on every cell with the kernels of the walks
-/// (hierarchy/pair_list.h), and compares with the truth. The truth is known by construction, or the oracle
+/// (answer/pair_list.h), and compares with the truth. The truth is known by construction, or the oracle
 /// decides the same vertices. Pairs are hard_pair(family, 5 seed + i, 0.., difficulty), where i numbers the
 /// difficulty. Throws InputError for families of whole scenes and for not-finite, which have no such pairs.
 AdversarialTally run_adversarial(const HardFamily& family, std::span<const AdversarialCell> cells,

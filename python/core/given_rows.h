@@ -3,7 +3,7 @@
 // of a frame, code and data of the interpreter are no longer in the caches, so that each Python call is slow.
 #pragma once
 
-#include "algorithms/device_frame.h"
+#include "algorithms/bodies/device_frame.h"
 #include "harness/plans/device_groups.h"
 
 #include <memory>

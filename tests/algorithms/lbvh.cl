@@ -4,7 +4,7 @@
 // Host variants: AXES K PRECISION
 #include "backends/portable.h"
 #include "algorithms/answer/emit.clh"
-#include "algorithms/bounds/leaf.clh"
+#include "algorithms/bodies/leaf.clh"
 #include "algorithms/bounds/volume.clh"
 #include "algorithms/broad_phase/body_pairs.clh"
 

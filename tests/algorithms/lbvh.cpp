@@ -2,8 +2,8 @@
 // An algorithm of the tests with its own hierarchy and traversal: this file, lbvh.cl, and the line at the end
 // that registers it.
 #include "algorithms/parameters/table.h"
-#include "algorithms/pipeline.h"
-#include "algorithms/sources.h"
+#include "algorithms/pipeline/pipeline.h"
+#include "algorithms/kernels/sources.h"
 #include "backends/upload.h"
 #include "tests/algorithms/lbvh.cl.h"
 

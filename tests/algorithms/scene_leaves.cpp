@@ -2,7 +2,7 @@
 // Algorithm leaf_query with other defaults, so that tests that iterate the algorithms also cover its tree
 // over all bodies. It keeps a tree for two frames.
 #include "algorithms/leaf_query/leaf_query_parameters.h"
-#include "algorithms/stages.h"
+#include "algorithms/pipeline/stages.h"
 
 #include <algorithm>
 

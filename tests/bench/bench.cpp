@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Microbenchmarks of the stages, on every available device. The host times iterations around one wait.
 // Compare times within one run only; times on a processor do not predict those on a GPU.
-#include "algorithms/bounds/ceilings.cl.h"
+#include "algorithms/hierarchy/ceilings.cl.h"
 #include "algorithms/broad_phase/broad.h"
 #include "algorithms/broad_phase/broad_stage.h"
 #include "algorithms/narrow_phase/reference.h"
 #include "tests/support/prepared_trees.h"
 #include "algorithms/distributed/displacement_tracker.h"
-#include "algorithms/sources.h"
-#include "algorithms/answer/status.clh"
+#include "algorithms/kernels/sources.h"
+#include "algorithms/kernels/status.clh"
 #include "algorithms/traversal.h"
 #include "backends/registry.h"
 

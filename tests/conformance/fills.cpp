@@ -5,7 +5,7 @@
 #include "tests/support/limited.h"
 #include "tests/support/long_form.h"
 #include "tests/support/scenes.h"
-#include "algorithms/pipeline.h"
+#include "algorithms/pipeline/pipeline.h"
 
 #include <deque>
 #include <fmt/format.h>

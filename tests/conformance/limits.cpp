@@ -4,7 +4,7 @@
 // that pair. Host kernels compile from the same source as all others.
 #include "algorithms/chunked/levels.clh"
 #include "algorithms/gproximity/queues.clh"
-#include "algorithms/sources.h"
+#include "algorithms/kernels/sources.h"
 #include "tests/support/cells.h"
 #include "tests/support/flawed.h"
 #include "tests/support/prepared_trees.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Sessions on several devices, each of which owns bodies: which bodies a device needs, partitions that
 // expire, explicit pairs, and answers that always equal those of one device.
-#include "algorithms/resident_session.h"
+#include "algorithms/pipeline/resident_session.h"
 #include "harness/verify/reference.h"
 #include "tests/support/cells.h"
 #include "tests/support/scenes.h"

@@ -2,7 +2,7 @@
 // Numbers past 32 bits, for which no scene is large enough: the sum of gProximity's queues, and explicit body
 // pairs.
 #include "algorithms/gproximity/queues.clh"
-#include "algorithms/sources.h"
+#include "algorithms/kernels/sources.h"
 #include "tests/support/cells.h"
 #include "tests/support/scenes.h"
 

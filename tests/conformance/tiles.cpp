@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Trees of tiles: the bounds equal those of the chunk trees, bit for bit, on every device and for every
 // level. Skipped tetrahedra are in no bound.
-#include "algorithms/hierarchy/heap.h"
+#include "algorithms/orders/heap.h"
 #include "algorithms/hierarchy/tile_trees.h"
 #include "tests/support/cells.h"
 #include "tests/support/flawed.h"

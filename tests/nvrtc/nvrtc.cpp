@@ -3,9 +3,9 @@
 // sm_90, the defaults for the other architectures. Without NVRTC it prints the number of kernels not
 // compiled.
 #include "algorithms/bodies/pack_stage.h"
-#include "algorithms/hierarchy/pair_list.h"
+#include "algorithms/answer/pair_list.h"
 #include "tests/support/prepared_trees.h"
-#include "algorithms/sources.h"
+#include "algorithms/kernels/sources.h"
 #include "algorithms/traversal.h"
 #include "backends/ptxas_log.h"
 #include "scenes/builtin.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "algorithms/broad_phase/broad_stage.h"
-#include "algorithms/answer/status.clh"
+#include "algorithms/kernels/status.clh"
 #include "tests/support/cells.h"
 #include "tests/support/prepared_trees.h"
 #include "tests/support/scenes.h"

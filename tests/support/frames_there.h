@@ -3,7 +3,7 @@
 #pragma once
 
 #include "algorithms/bodies/bodies.h"
-#include "algorithms/device_frame.h"
+#include "algorithms/bodies/device_frame.h"
 #include "backends/upload.h"
 
 namespace tandem::support {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/hierarchy/heap.h"
+#include "algorithms/orders/heap.h"
 #include "tests/support/prepared_trees.h"
 #include "tests/support/oracle_touch.h"
 

@@ -4,9 +4,9 @@
 
 #include "contacts_pairs.h"
 
-#include "algorithms/answer/status.clh"
+#include "algorithms/kernels/status.clh"
 #include "algorithms/narrow_phase/contact_stage.h"
-#include "algorithms/sources.h"
+#include "algorithms/kernels/sources.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 // Helpers shared by the tests of the Device contract.
 #pragma once
 
-#include "algorithms/sources.h"
+#include "algorithms/kernels/sources.h"
 #include "backends/registry.h"
 
 #include <gtest/gtest.h>

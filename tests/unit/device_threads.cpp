@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Two host devices on two threads are independent: work-group numbers, local memory and defines are
 // thread-local.
-#include "algorithms/answer/status.clh"
-#include "algorithms/sources.h"
+#include "algorithms/kernels/status.clh"
+#include "algorithms/kernels/sources.h"
 #include "backends/host/host_device.h"
 #include "tests/unit/device_support.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/expected_groups.h"
+#include "algorithms/kernels/expected_groups.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Costs that kernels declare, in bytes and operations: every kernel has them, and some are computed by hand.
-#include "algorithms/cost.h"
-#include "algorithms/sources.h"
+#include "algorithms/bodies/cost.h"
+#include "algorithms/kernels/sources.h"
 #include "harness/sampling/replays.h"
 #include "tests/support/cells.h"
 #include "tests/support/scenes.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/hierarchy/levels.h"
-#include "algorithms/hierarchy/order.h"
+#include "algorithms/orders/order.h"
 #include "scenes/builtin.h"
 #include "scenes/scene.h"
 #include "tests/support/scenes.h"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Orders of a mesh's tetrahedra by builders other than sah.
-#include "algorithms/hierarchy/axis_orders.h"
-#include "algorithms/hierarchy/breadth_order.h"
-#include "algorithms/hierarchy/heap.h"
-#include "algorithms/hierarchy/median_order.h"
-#include "algorithms/hierarchy/order.h"
-#include "algorithms/hierarchy/sah_order.h"
+#include "algorithms/orders/axis_orders.h"
+#include "algorithms/orders/breadth_order.h"
+#include "algorithms/orders/heap.h"
+#include "algorithms/orders/median_order.h"
+#include "algorithms/orders/order.h"
+#include "algorithms/orders/sah_order.h"
 #include "scenes/scene.h"
 #include "tests/support/scenes.h"
 

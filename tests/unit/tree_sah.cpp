@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The order from the surface area heuristic, and the tables that tiles derive from it.
-#include "algorithms/hierarchy/order.h"
-#include "algorithms/hierarchy/sah_order.h"
+#include "algorithms/orders/order.h"
+#include "algorithms/orders/sah_order.h"
 #include "scenes/scene.h"
 #include "tests/support/scenes.h"
 

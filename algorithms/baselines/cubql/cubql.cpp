@@ -2,8 +2,8 @@
 #include "algorithms/traversal.h"
 
 #include "algorithms/baselines/cubql/cubql_stages.h"
-#include "algorithms/cost.h"
-#include "algorithms/pipeline.h"
+#include "algorithms/bodies/cost.h"
+#include "algorithms/pipeline/pipeline.h"
 #include "base/error.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/stages.h"
+#include "algorithms/pipeline/stages.h"
 
 namespace tandem {
 

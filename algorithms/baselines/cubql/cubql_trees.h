@@ -2,7 +2,7 @@
 #pragma once
 
 #include "algorithms/hierarchy/tile_trees.h"
-#include "algorithms/stages.h"
+#include "algorithms/pipeline/stages.h"
 #include "backends/device.h"
 
 namespace tandem {

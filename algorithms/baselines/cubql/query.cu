@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Kernels over cuBQL's trees; its traversal finds the leaves. Compiled to PTX when the project is built, and
 // loaded like any kernel, so that clocks and traces include them.
-#include "algorithms/answer/status.clh"
+#include "algorithms/kernels/status.clh"
 #include "algorithms/baselines/cubql/build.h"
 #include "backends/lanes.h"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/traversal.h"
 
-#include "algorithms/cost.h"
+#include "algorithms/bodies/cost.h"
 #include "algorithms/baselines/embree/embree_stages.h"
-#include "algorithms/pipeline.h"
+#include "algorithms/pipeline/pipeline.h"
 #include "base/error.h"
 
 #include <fmt/format.h>

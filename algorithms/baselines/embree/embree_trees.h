@@ -2,7 +2,7 @@
 #pragma once
 
 #include "algorithms/hierarchy/tile_trees.h"
-#include "algorithms/stages.h"
+#include "algorithms/pipeline/stages.h"
 
 #if __has_include(<embree4/rtcore.h>) // the order in which CMake looks for them
 #include <embree4/rtcore.h>

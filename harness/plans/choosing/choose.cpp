@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/plans/choosing/choose.h"
 
-#include "algorithms/sources.h"
+#include "algorithms/kernels/sources.h"
 #include "base/digest.h"
 #include "base/private_folder.h"
 #include "base/standard_streams.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/record/table/throughput.h"
 
-#include "algorithms/cost.h"
+#include "algorithms/bodies/cost.h"
 #include "harness/profile/kernels.h"
 
 #include <numeric>

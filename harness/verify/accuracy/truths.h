@@ -2,7 +2,7 @@
 #pragma once
 
 #include "algorithms/traversal.h"
-#include "algorithms/hierarchy/order.h"
+#include "algorithms/orders/order.h"
 #include "harness/verify/accuracy/answer_errors.h"
 #include "harness/verify/oracle/motion_truth.h"
 #include "harness/plans/frames.h"

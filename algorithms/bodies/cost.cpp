@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/cost.h"
+#include "algorithms/bodies/cost.h"
 
 #include "algorithms/bounds/geometry.h"
+#include "algorithms/kernels/counter.h"
 #include "algorithms/parameters/table.h"
-#include "algorithms/pipeline.h"
+#include "algorithms/orders/order.h"
 
 #include <algorithm>
 #include <numeric>
@@ -109,17 +110,6 @@ KernelCost walk_cost(const SceneFacts& scene, std::string_view entry) {
         [=](const FrameFacts& f) { return scene.dop() * f.touched + scene.pair_bytes * f.candidate_pairs; },
         [k = scene.k](const FrameFacts& f) { return k * f.counted(counters::bvtt_nodes.name); },
         "nodes of tetrahedra in candidate pairs in, candidate pairs out; k a node pair tested"};
-}
-
-std::vector<KernelCost> Traversal::do_costs(const Scene&, const Settings&) const { return {}; }
-
-std::vector<KernelCost> Traversal::costs(const Scene& scene, const Settings& settings) const {
-    const SceneFacts facts(scene, settings);
-    auto all = do_costs(scene, settings);
-    for (const auto& common : {body_costs(facts), broad_costs(facts), contact_costs(facts),
-                               answer_costs(facts), published_costs(facts)})
-        all.insert(all.end(), common.begin(), common.end());
-    return all;
 }
 
 } // namespace tandem

@@ -3,7 +3,9 @@
 // lower bound for the time of a kernel. Each folder has the models of its own kernels.
 #pragma once
 
-#include "algorithms/traversal.h"
+#include "algorithms/parameters/parameter.h"
+#include "scenes/contact.h"
+#include "scenes/scene.h"
 
 #include <functional>
 #include <map>
@@ -30,8 +32,8 @@ struct FrameFacts {
 
 /// The cost model of one kernel, for all its launches in a frame. Bytes are compulsory: each input is read
 /// once and each output written once. Operations are comparisons, minima or maxima of two ends of slabs. An
-/// overlap test of two k-DOPs needs k of them; test_overlaps in bounds/ceilings.cl measures their peak rate.
-/// A null function means that the value is not modelled; negligible values are 0.
+/// overlap test of two k-DOPs needs k of them; test_overlaps in hierarchy/ceilings.cl measures their peak
+/// rate. A null function means that the value is not modelled; negligible values are 0.
 struct KernelCost {
     std::string_view entry;                         ///< name of the kernel's entry point
     std::function<double(const FrameFacts&)> bytes, ///< moved in a frame; null: not modelled

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/hierarchy/median_order.h"
+#include "algorithms/orders/median_order.h"
 
-#include "algorithms/hierarchy/axis_orders.h"
-#include "algorithms/hierarchy/order.h"
+#include "algorithms/orders/axis_orders.h"
+#include "algorithms/orders/order.h"
 
 namespace tandem {
 

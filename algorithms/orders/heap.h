@@ -11,7 +11,7 @@ using uint = std::uint32_t;
 
 #define DEVICE inline
 #define COUNT_LEADING_ZEROS(value) static_cast<uint>(std::countl_zero(value))
-#include "algorithms/hierarchy/heap.clh"
+#include "algorithms/orders/heap.clh"
 #undef DEVICE
 #undef COUNT_LEADING_ZEROS
 #undef ROOT_NODE

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/narrow_phase/reference.h"
+#include "algorithms/answer/contact_digest.h"
 
 #include <bit>
 

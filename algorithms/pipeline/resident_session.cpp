@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/resident_session.h"
+#include "algorithms/pipeline/resident_session.h"
 
-#include "algorithms/batches.h"
+#include "algorithms/pipeline/batches.h"
 #include "algorithms/bodies/frame_on_device.h"
 
 #include <fmt/format.h>

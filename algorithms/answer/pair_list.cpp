@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/hierarchy/pair_list.h"
+#include "algorithms/answer/pair_list.h"
 
-#include "algorithms/sources.h"
+#include "algorithms/kernels/sources.h"
 
 #include <algorithm>
 

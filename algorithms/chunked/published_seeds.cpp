@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/published/chunked_seeds.h"
+#include "algorithms/chunked/published_seeds.h"
 
 #include "algorithms/chunked/levels.clh"
 

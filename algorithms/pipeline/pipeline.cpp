@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/pipeline.h"
+#include "algorithms/pipeline/pipeline.h"
 
 #include "algorithms/parameters/table.h"
 #include "base/error.h"
@@ -80,15 +80,6 @@ std::vector<const Parameter*> pipeline_parameters(std::span<const Parameter* con
                            &parameters::threads, &parameters::pair_capacity, &parameters::contact_capacity});
     all.insert(all.end(), own.begin(), own.end());
     return all;
-}
-
-bool is_published(const Settings& settings) {
-    return settings.has(parameters::residency) && settings[parameters::residency] == Residency::published;
-}
-
-bool walks_part(const Settings& settings) {
-    return settings.has(parameters::first_body_pair)
-           && (settings[parameters::first_body_pair] != 0 || settings[parameters::most_body_pairs] != 0);
 }
 
 void check_local_memory(const Settings& settings, const DeviceInfo& info, std::uint64_t needed,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/distributed/subdomain.h"
+#include "algorithms/bodies/subdomain.h"
 
 namespace tandem {
 

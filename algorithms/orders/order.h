@@ -2,6 +2,7 @@
 #pragma once
 
 #include "algorithms/parameters/choices.h"
+#include "algorithms/parameters/parameter.h"
 #include "scenes/scene.h"
 
 #include <cstdint>
@@ -38,6 +39,10 @@ enum class Walked {
     all,
     boundary ///< those with boundary faces; all if none of a mesh has them, since no tree is empty
 };
+
+/// The tetrahedra that sessions with these settings walk. With output=contacts, a rule whose contacts need
+/// boundary faces of both tetrahedra leaves out the others. residency=published walks everything.
+Walked walked_of(const Settings& settings);
 
 /// Numbers of the walked tetrahedra, ascending.
 std::vector<std::uint32_t> walked_tetrahedra(const Mesh& mesh, Walked walked);

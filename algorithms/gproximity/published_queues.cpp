@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/published/queue_words.h"
+#include "algorithms/gproximity/published_queues.h"
 
 namespace tandem {
 

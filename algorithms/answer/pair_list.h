@@ -2,7 +2,7 @@
 #pragma once
 
 #include "algorithms/hierarchy/chunk_trees.h"
-#include "algorithms/hierarchy/pair_list.cl.h"
+#include "algorithms/answer/pair_list.cl.h"
 #include "scenes/contact.h"
 
 #include <span>

@@ -3,8 +3,8 @@
 
 #include "algorithms/bodies/pack_stage.h"
 #include "algorithms/bodies/pose_stage.h"
-#include "algorithms/pipeline.h"
-#include "algorithms/distributed/subdomain.h"
+#include "algorithms/pipeline/pipeline.h"
+#include "algorithms/bodies/subdomain.h"
 
 #include <array>
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/hierarchy/order.h"
+#include "algorithms/orders/order.h"
 
-#include "algorithms/hierarchy/breadth_order.h"
-#include "algorithms/hierarchy/median_order.h"
-#include "algorithms/hierarchy/sah_order.h"
+#include "algorithms/orders/breadth_order.h"
+#include "algorithms/orders/median_order.h"
+#include "algorithms/orders/sah_order.h"
+#include "algorithms/parameters/table.h"
 
 #include <algorithm>
 #include <array>
@@ -185,6 +186,13 @@ OrderedMesh ordered(const Mesh& mesh, MeshOrder order) {
             for (const auto vertex : mesh.tetrahedra[id]) result.joined.push_back(mesh.welded[vertex]);
     }
     return result;
+}
+
+Walked walked_of(const Settings& settings) {
+    const bool leaves_out = settings[parameters::output] == Output::contacts
+                            && boundaries_needed(settings[parameters::contact_rule]) == 2
+                            && !is_published(settings);
+    return leaves_out ? Walked::boundary : Walked::all;
 }
 
 } // namespace tandem

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/hierarchy/axis_orders.h"
+#include "algorithms/orders/axis_orders.h"
 #include "backends/lanes.h"
 
 #include <algorithm>

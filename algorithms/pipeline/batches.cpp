@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/batches.h"
+#include "algorithms/pipeline/batches.h"
 
 #include "algorithms/parameters/table.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/hierarchy/sah_order.h"
+#include "algorithms/orders/sah_order.h"
 
-#include "algorithms/hierarchy/axis_orders.h"
-#include "algorithms/hierarchy/heap.h"
+#include "algorithms/orders/axis_orders.h"
+#include "algorithms/orders/heap.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/hierarchy/breadth_order.h"
+#include "algorithms/orders/breadth_order.h"
 
-#include "algorithms/hierarchy/order.h"
+#include "algorithms/orders/order.h"
 #include "scenes/faces.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/walker.h"
+#include "algorithms/pipeline/walker.h"
 
 #include "algorithms/parameters/table.h"
 

@@ -3,6 +3,8 @@
 
 #include "algorithms/answer/answers.h"
 #include "algorithms/answer/status.h"
+#include "algorithms/bodies/body_pair.h"
+#include "algorithms/kernels/counter.h"
 
 #include <map>
 
@@ -75,11 +77,5 @@ private:
     virtual void do_reset() {}
     virtual void do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const = 0;
 };
-
-/// Counters of all walks that use emit.clh.
-namespace counters {
-inline constexpr Counter bvtt_nodes{"bvtt_nodes", "node pairs", "node pairs tested"};
-inline constexpr Counter seeds{"seeds", "node pairs", "node pairs from which walks start"};
-} // namespace counters
 
 } // namespace tandem

@@ -6,18 +6,14 @@
 #include "algorithms/answer/status.h"
 #include "algorithms/broad_phase/body_pairs.h"
 #include "algorithms/narrow_phase/contact_stage.h"
-#include "algorithms/stages.h"
+#include "algorithms/pipeline/stages.h"
+#include "algorithms/traversal.h"
 
 namespace tandem {
 
 /// The settings of an algorithm whose sessions are pipelines: the common ones, then its own. `published`:
 /// whether its walks support the paper's data path.
 std::vector<const Parameter*> pipeline_parameters(std::span<const Parameter* const> own, bool published);
-
-/// Whether these settings select the paper's data path.
-bool is_published(const Settings& settings);
-/// Whether a session walks a part of a frame's body pairs (first_body_pair, most_body_pairs).
-bool walks_part(const Settings& settings);
 
 /// Throws InputError if work-groups of these settings need more local memory than the device has. `what`: the
 /// setting that needs it, such as "schedule=group". `remedy`: what the user can do.

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/hierarchy/hierarchy.h"
-#include "algorithms/walker.h"
+#include "algorithms/bodies/bodies.h"
+#include "algorithms/kernels/launch_shape.h"
+#include "algorithms/parameters/parameter.h"
 
 namespace tandem {
 
@@ -13,12 +14,6 @@ struct BuildContext {
     const Settings& settings; ///< Traversal::fitted
     const Bodies& bodies;     ///< whose tetrahedra are to be walked: those of the scene, or fewer (walked_of)
     LaunchShape shape;
-};
-
-/// An algorithm's own stages of a frame: a hierarchy, and the walk over it.
-struct AlgorithmStages {
-    std::unique_ptr<Hierarchy> hierarchy;
-    std::unique_ptr<Walker> walker;
 };
 
 } // namespace tandem

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/pipeline.h"
+#include "algorithms/pipeline/pipeline.h"
 
 namespace tandem {
 

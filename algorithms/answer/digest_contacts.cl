@@ -5,7 +5,7 @@
 
 #include "algorithms/answer/pairs.clh"
 #include "algorithms/bodies/body.clh"
-#include "algorithms/narrow_phase/contact_rows.clh"
+#include "algorithms/answer/contact_rows.clh"
 
 // The term of a contact in the digest: that of its pair, then the feature, then the bits of its reals, two
 // words at a time.
