@@ -4,8 +4,8 @@
 // Host variants: PRECISION
 #include "backends/portable.h"
 
-#include "algorithms/narrow_phase/trial.clh"
-#include "algorithms/narrow_phase/waiting.clh"
+#include "algorithms/narrow_phase/pair_state.clh"
+#include "algorithms/narrow_phase/pair_lists.clh"
 
 // Pairs per work-item between two writes of its group's results, each of which needs barriers. Where many
 // pairs lack boundary faces, enough others remain for all work-items.
@@ -49,7 +49,7 @@ KERNEL void certify_pairs(GLOBAL const uint* found, uint first, uint pair_capaci
             const uint index = (uint)(start + LOCAL_ID);
             if (start + LOCAL_ID >= count) continue;
             if (lacks_boundary(&all, index))
-                count_state(WITHOUT_BOUNDARY, group);
+                count_state(PAIR_WITHOUT_BOUNDARY, group);
             else
                 asked[LOCAL_ATOMIC_ADD(group + GROUP_ASKED, 1u)] = index;
         }
@@ -58,12 +58,12 @@ KERNEL void certify_pairs(GLOBAL const uint* found, uint first, uint pair_capaci
             const uint index = asked[i];
             int edge = -1;
             const int apart = KNOWN_APART(verdicts, index);
-            const int state = apart ? REJECTED : try_certificate(&all, index, &edge);
+            const int state = apart ? PAIR_REJECTED : try_certificate(&all, index, &edge);
             count_state(state, group);
-            if (state == OPEN)
+            if (state == PAIR_OPEN)
                 waiting[LIST_OPEN * FOUND_CAPACITY + LOCAL_ATOMIC_ADD(group + LIST_OPEN, 1u)] =
                     OPEN_PAIR(index - first, edge);
-            if (state == MEETING)
+            if (state == PAIR_MEETING)
                 waiting[LIST_MEETING * FOUND_CAPACITY + LOCAL_ATOMIC_ADD(group + LIST_MEETING, 1u)] = index;
         }
         hand_out(waiting, group, open, meeting, status);

@@ -27,7 +27,7 @@ constexpr bool has_verdicts(DecisionPrecision decision) {
     return decision != DecisionPrecision::fp32 && decision != DecisionPrecision::none;
 }
 
-/// The define DECIDED of trial.clh. `by_verdicts`: the kernel reads verdicts.
+/// The define DECIDED of pair_state.clh. `by_verdicts`: the kernel reads verdicts.
 constexpr const char* decided_define(DecisionPrecision decision, bool by_verdicts) {
     return decision == DecisionPrecision::none ? "2" : by_verdicts ? "1" : "0";
 }

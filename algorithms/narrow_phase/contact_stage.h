@@ -53,7 +53,7 @@ private:
     KernelOf<kernels::contacts::GenerateContacts> generate_;
     KernelOf<kernels::contacts::GenerateContacts> at_once_; ///< null where it is never the better choice
     std::optional<std::uint64_t> expected_;
-    GrowableBuffer waiting_; ///< lists of waiting.clh, one column each: LIST_OPEN, LIST_MEETING
+    GrowableBuffer waiting_; ///< lists of pair_lists.clh, one column each: LIST_OPEN, LIST_MEETING
     Buffer nothing_;         ///< for kernels that do not read the argument
     std::unique_ptr<DecisionStage> decision_; ///< null unless has_verdicts()
 };

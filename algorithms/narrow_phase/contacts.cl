@@ -4,16 +4,16 @@
 // Host variants: PRECISION
 #include "backends/portable.h"
 
-#include "algorithms/narrow_phase/trial.clh"
-#include "algorithms/narrow_phase/waiting.clh"
+#include "algorithms/narrow_phase/pair_state.clh"
+#include "algorithms/narrow_phase/pair_lists.clh"
 
 // State of a pair. `pair`: as in try_all.
-DEVICE int try_pair(const Candidates* all, uint index, int apart, LOCAL Encounter* pair) {
-    if (lacks_boundary(all, index)) return WITHOUT_BOUNDARY;
-    if (apart) return REJECTED;
+DEVICE int try_pair(const Candidates* all, uint index, int apart, LOCAL LocalPair* pair) {
+    if (lacks_boundary(all, index)) return PAIR_WITHOUT_BOUNDARY;
+    if (apart) return PAIR_REJECTED;
     int edge = -1;
     const int state = try_certificate(all, index, &edge);
-    return state == OPEN ? try_all(all, index, edge, pair) : state;
+    return state == PAIR_OPEN ? try_all(all, index, edge, pair) : state;
 }
 
 // Features of a group's pairs wait in a queue, so that all work-items have one, however many a pair has. An
@@ -67,7 +67,7 @@ DEVICE void make_contacts(ulong features, LOCAL const MeetingPair* pairs, LOCAL 
         for (uint start = 0; start < end; start += GROUP_SIZE) {
             const uint entry = start + LOCAL_ID < end ? queue[start + LOCAL_ID] : 0u;
             LOCAL const MeetingPair* pair = pairs + OWNER_OF(entry);
-            Touch touch;
+            LocalContact touch;
             const int has_contact = start + LOCAL_ID < end && touch_of(pair, FEATURE_OF(entry), &touch);
             const ulong row = row_in_answer(has_contact, group, sink->status);
             if (has_contact && row < sink->capacity) write_touch(pair, FEATURE_OF(entry), &touch, row, sink);
@@ -96,13 +96,13 @@ KERNEL void generate_contacts(GLOBAL const uint* found, uint first, uint pair_ca
         ulong features = 0;
         if (start + LOCAL_ID < count) {
             const uint index = AT_ONCE ? (uint)(start + LOCAL_ID) : meeting[start + LOCAL_ID];
-            int state = MEETING;
+            int state = PAIR_MEETING;
             if (AT_ONCE) {
                 const int apart = KNOWN_APART(verdicts, index);
                 state = try_pair(&all, index, apart, &pairs[LOCAL_ID].pair);
                 count_state(state, group);
             }
-            if (state == MEETING) features = prepare_contacts(&all, index, pairs + LOCAL_ID);
+            if (state == PAIR_MEETING) features = prepare_contacts(&all, index, pairs + LOCAL_ID);
         }
         make_contacts(features, pairs, queue, group, &sink);
         start += GLOBAL_COUNT;

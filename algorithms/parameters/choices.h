@@ -6,6 +6,8 @@
 
 #include "algorithms/parameters/contact_rules.clh"
 
+#include <cstddef>
+
 namespace tandem {
 
 /// Directions for k = 8.
