@@ -363,30 +363,7 @@ class Rates(unittest.TestCase):
 
     @staticmethod
     def side(times, session):
-        made = []
-        for number, row in enumerate(times):
-            made.append(
-                cells.RecordedCell(
-                    1,
-                    3,
-                    str(number),
-                    "ok",
-                    "",
-                    {},
-                    {},
-                    1,
-                    True,
-                    session,
-                    None,
-                    len(row),
-                    dict(enumerate(row)),
-                    None,
-                    None,
-                    "",
-                    "",
-                    False,
-                )
-            )
+        made = [cells.Cell(record(str(number), row, session=session)) for number, row in enumerate(times)]
         return cells.RecordedCells("", "", made, [], [], len(made), 0, False)
 
     def found(

@@ -25,6 +25,7 @@ from tandem.paper import claims, paper_numbers
 from tandem.paper.folder import Folder
 from tandem.paper.measures import Declared
 from tandem.paper.methods import names
+from tandem.cell import Cell
 from tandem.paper.quantities import batches_of, is_time
 from tandem.paper.rules import (
     AGREES,
@@ -313,9 +314,9 @@ class Verdicts(unittest.TestCase):
         record["devices"][0]["compute_units"] = 132
         record["work"]["body_pairs"] = [272, 273, 600] + [0] * (made.FULL_STEPS - 3)
         frames = [(0, 0), (1, 1), (2, 2), (0, made.FULL_STEPS - 1)]
-        self.assertEqual([batches_of(record, own) for own in frames], [1, 2, 3, 6])
+        self.assertEqual([batches_of(Cell(record), own) for own in frames], [1, 2, 3, 6])
         record["settings"] |= {"sizes": "own", "batch": "30"}
-        self.assertEqual(batches_of(record, (0, 0)), 10)
+        self.assertEqual(batches_of(Cell(record), (0, 0)), 10)
 
     def test_only_common_frames_of_one_recording_are_compared(self):
         fields = {one["id"]: one for one in claims.declared()}["fewer-launches"]

@@ -220,7 +220,8 @@ class Compositions(unittest.TestCase):
                     one = made.record("plates", Declared(fields).wanted(fields[side], "8"), 3)
                     one["key"] += backend
                     one["devices"] = [
-                        {"id": f"{backend}:0", "name": device if backend == "opencl" else "GPU"}
+                        {**one["devices"][0], "id": f"{backend}:0"}
+                        | ({"name": device} if backend == "opencl" else {})
                     ]
                     made.set_quantity(one, "frame", [scale * SCALE] * 3)
                     records.append(one)

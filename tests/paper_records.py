@@ -43,7 +43,8 @@ def record(scene, wanted, count):
         "asked": {},
         "scene": {"name": scene, "key": SCENE_KEYS[scene], "digest": scene, "bodies": 1, "tetrahedra": 1},
         "frames": {"first": 0, "last": FULL_STEPS - 1},
-        "devices": [{"id": "cuda:0", "name": "GPU"}],
+        "devices": [{"id": "cuda:0", "name": "GPU", "driver": "1", "kind": "gpu"}],
+        "environment": {"commit": "1", "dirty": False},
         "conditions": {"disturbed": []},
         "total_ns": {**times([10**9] * count), "frames": [[10**9 / FULL_STEPS] * FULL_STEPS] * count},
         "breakdown_ns": {**times([10**9] * count), "frames": [10**9 / FULL_STEPS] * FULL_STEPS},
@@ -93,7 +94,7 @@ def set_quantity(made, name, values):
     elif kind in ("contacts", "body pairs"):
         made["work"][kind.replace(" ", "_")] = [values[0] / FULL_STEPS] * FULL_STEPS
     elif kind in ("bodies", "tetrahedra"):
-        made["scene"][kind] = values[0]
+        made["scene"][kind] = round(values[0])
     else:  # launches and bytes of a stage
         made["stages"].setdefault(
             first, {"device_ns": times([0]), "host_ns": times([0]), "launches": 1, "waits": 0, "bytes": 0}

@@ -361,9 +361,16 @@ class Drawing(unittest.TestCase):
         self.assertTrue(names[0].startswith("tiled"), names)
 
     def test_indistinguishable_cells_are_marked(self):
-        samples = self.plates.samples.copy()
-        samples["ms"] = 1 + 0.1 * ((samples["round"] + samples["cell"]) % 2)
-        records = dataclasses.replace(self.plates, samples=samples)
+        changed = []
+        for number, index in enumerate(self.plates.cells.index):
+            record = json.loads(json.dumps(self.plates.cell_of[index].record))
+            total = record["total_ns"]
+            total["samples"] = [10**6 + 10**5 * ((n + number) % 2) for n in range(len(total["rounds"]))]
+            changed.append(record)
+        with tempfile.NamedTemporaryFile("w", suffix=".jsonl") as file:
+            file.write("".join(json.dumps(record) + "\n" for record in changed))
+            file.flush()
+            records = tandem.read(file.name)
         self.assertEqual(len(records.verdict().leaders()), len(records.cells))
         self.assertIn("not told apart", " ".join(tandem.plot_cells(records).get_title("left").split()))
 

@@ -27,7 +27,6 @@ from tandem.report import assembly, libraries, scene
 from tandem.report.data import data_of
 from tandem.report.other_records import Simulations
 from tandem.report.reading import read_records
-from tandem.report.shown_cells import FIELDS
 
 H200 = SOURCE / "results/h200"
 
@@ -56,7 +55,7 @@ class Reading(Case):
         return read_records([self.file(*records)], **how)
 
     def shown(self, records):
-        return [(cell.recorded.session, cell.is_older) for cell in records.cells]
+        return [(cell.session, cell.is_older) for cell in records.cells]
 
     def test_a_record_and_its_continuation(self):
         begun, whole = self.of_rounds(3, "a"), self.of_rounds(9, "b")
@@ -70,7 +69,7 @@ class Reading(Case):
             [(file["name"], file["cells"]) for file in read.files],
             [("begun.jsonl", 1), ("whole.jsonl.xz", 1)],
         )
-        self.assertEqual(read.cells[0].row[list(FIELDS).index("file")], 1)
+        self.assertEqual(read.paths.index(read.cells[0].path), 1)
 
     def test_other_times_are_another_record(self):
         read = self.read(self.of_rounds(3, "a", 2), self.of_rounds(9, "b"))
@@ -96,7 +95,7 @@ class Reading(Case):
     def test_of_too_many_records_one_per_key_is_kept(self):
         keys = [self.of_rounds(5, f"{i}", 1 + i / 100, key=f"key {i % 4}") for i in range(8)]
         read = self.read(*keys, max_cells=6)
-        self.assertEqual([cell.recorded.session for cell in read.cells], ["6", "7", "4", "5"])
+        self.assertEqual([cell.session for cell in read.cells], ["6", "7", "4", "5"])
         self.assertEqual(read.notes, ["4 older records of cells that were recorded again are left out"])
         read = self.read(*keys, self.of_rounds(5, "w", status="wrong", key="another"), max_cells=3)
         self.assertEqual(len(read.cells), 3)

@@ -15,7 +15,8 @@ import scipy.stats
 from program import SOURCE
 
 sys.path.insert(0, str(SOURCE / "python"))
-from tandem import lines, rank_ratios, rank_tests, resampling  # noqa: E402
+from tandem import rank_ratios, rank_tests, resampling  # noqa: E402
+from tandem.cell import each  # noqa: E402
 from tandem.comparison import matching  # noqa: E402
 
 
@@ -307,13 +308,11 @@ class Ratios(unittest.TestCase):
         """Bit for bit equal to the intervals that the program wrote to records."""
         found = 0
         for name in ("h200/plan.jsonl", "h200/seeds.jsonl", "h100x2/shares.jsonl"):
-            for record, place in lines.each(SOURCE / "results" / name):
-                if record["total_ns"]:
-                    medians = [statistics.median(own) for own in lines.samples_by_round(record).values()]
+            for cell in each(SOURCE / "results" / name):
+                if cell.rounds:
+                    total = cell.record["total_ns"]
                     self.assertEqual(
-                        resampling.median_interval(medians),
-                        (record["total_ns"]["low"], record["total_ns"]["high"]),
-                        place,
+                        resampling.median_interval(cell.times()), (total["low"], total["high"]), cell.location
                     )
                     found += 1
         self.assertGreater(found, 100)

@@ -3,7 +3,7 @@
 """report_sentences.py PROGRAM SOURCE: what a page about records states (python/tandem/report): groups, ranks,
 sentences, conditions, and omissions for lack of space."""
 
-import copy
+import dataclasses
 import json
 import sys
 import unittest
@@ -11,61 +11,46 @@ import unittest
 from program import SOURCE
 
 sys.path.insert(0, str(SOURCE / "python"))
-from tandem.comparison.cells import Answer, RecordedCell
+from tandem.cell import Answer, Cell
 from tandem.report.conditions import conditions_text, sampling_text
 from tandem.report.data import data_of
 from tandem.report.groups import groups_of
 from tandem.report.reading import Records
 from tandem.report.sentences import group_sentences, summary_sentences
-from tandem.report.shown_cells import FIELDS, STAGES, ShownCell
 from tandem.report.sweeps import sweeps_of
 
 ONE_MS = [1.0, 1.01, 0.99, 1.0, 1.02, 0.98, 1.0, 1.01, 0.99, 1.0]
 TWO_MS = [2 * ms for ms in ONE_MS]
 
 
-def cell_of(algorithm, rounds, k="18", **changes):
-    """A cell with these times of its rounds, in ms of its single frame."""
-    names = {
+def cell_of(algorithm, rounds, k="18", pairs=None, kind="gpu", stages=None, **changes):
+    """A cell with these times of its rounds, in ms of its frames."""
+    samples = [1e6 * ms for ms in rounds]
+    record = {
+        "schema": 4,
+        "key": f"{algorithm}|k={k}",
+        "session": "",
+        "status": "ok",
+        "failure": None,
         "algorithm": algorithm,
         "preset": "resident",
-        "devices": "cuda:0",
-        "model": "GPU",
-        "driver": "1",
-        "scene": "pile",
-        "frames": "frames 0:0",
-        "handling": "",
-        "digest": "digest 1",
+        "settings": {"k": k},
+        "devices": [{"id": "cuda:0", "name": "GPU", "driver": "1", "kind": kind}],
+        "scene": {"key": "pile:bodies=3", "name": "pile", "digest": "1", "bodies": 3, "tetrahedra": 36},
+        "frames": {"first": 0, "last": 0},
+        "total_ns": {"samples": samples, "rounds": [*range(len(samples))]},
+        "stages": {
+            name: {"device_ns": {"median": 1e6 * ms}, "host_ns": {"median": 0}}
+            for name, ms in (stages or {}).items()
+        },
+        "work": pairs and {"digest": dataclasses.asdict(pairs)},
+        "environment": {"commit": "1", "dirty": False, "date": "2026"},
     }
-    recorded = RecordedCell(
-        line=1,
-        schema=3,
-        key=f"{algorithm}|k={k}",
-        status="ok",
-        failure="",
-        names=names,
-        settings={"k": k},
-        frames=1,
-        on_gpus=True,
-        session="",
-        seed=None,
-        samples=len(rounds),
-        rounds={i: 1e6 * ms for i, ms in enumerate(rounds)},
-        pairs=None,
-        contacts=None,
-        commit="",
-        processor="",
-        dirty=False,
-    )
-    for name, value in changes.items():
-        setattr(recorded, name, value)
-    return ShownCell(
-        recorded,
-        "pile:bodies=3",
-        "pile",
-        "1",
-        row=[{} if name == "stages" else f"text {algorithm}" for name in list(FIELDS)[:-1]],
-    )
+    return Cell(record | changes, "some.jsonl", 1)
+
+
+def records_of(cells):
+    return Records(paths=["some.jsonl"], cells=cells)
 
 
 def groups_and_sentences(cells):
@@ -103,11 +88,9 @@ class Sentences(unittest.TestCase):
         shorter count against others."""
 
         def named(first, second, third=None):
-            cells = [cell_of("a", ONE_MS), cell_of("b", TWO_MS)] + (
-                [cell_of("c", [ms + 0.001 for ms in ONE_MS])] if third else []
+            cells = [cell_of("a", ONE_MS, stages=first), cell_of("b", TWO_MS, stages=second)] + (
+                [cell_of("c", [ms + 0.001 for ms in ONE_MS], stages=third)] if third else []
             )
-            for cell, stages in zip(cells, (first, second, third)):
-                cell.row[STAGES] = {name: [ms, 0.0, 1, 0] for name, ms in (stages or {}).items()}
             return groups_and_sentences(cells)[1].partition("[")[2].partition("]. ")[2]
 
         self.assertEqual(
@@ -164,7 +147,7 @@ class Sentences(unittest.TestCase):
             ),
         ):
             cells = [cell_of("a", ONE_MS[: len(other)]), cell_of("b", other)]
-            group = json.loads(data_of(Records(cells=cells), 1_000_000, "", "").json)["groups"][0]
+            group = json.loads(data_of(records_of(cells), 1_000_000, "", "").json)["groups"][0]
             self.assertTrue(group["lead"]["title"].startswith(first), group)
             self.assertEqual(group["lead"]["which"], behind)
             self.assertIn(word, group["words"])
@@ -250,19 +233,23 @@ class Sentences(unittest.TestCase):
         self.assertEqual([ranked.cell for ranked in groups[0].ranked], [1])
 
     def test_processors(self):
-        cells = [cell_of("a", ONE_MS, on_gpus=False)]
+        cells = [cell_of("a", ONE_MS, kind="cpu")]
         self.assertEqual(
             summary_sentences(groups_of(cells), cells), ["Times on processors do not predict times on a GPU."]
         )
 
 
-def swept(setting, values, times, **changes):
+def swept(setting, values, times, k="18", pairs=None, **changes):
     """Cells with these values of a setting, each with its rounds."""
-    cells = [cell_of("a", rounds, **changes) for rounds in times]
-    for cell, value in zip(cells, values):
-        cell.recorded.settings = {**cell.recorded.settings, setting: value}
-        cell.recorded.key += f"|{setting}={value}"
-    return cells
+    return [
+        cell_of(
+            "a",
+            rounds,
+            pairs=pairs and Answer(pairs + i, "1", "2"),
+            **{"settings": {"k": k, setting: value}, "key": f"a|k={k}|{setting}={value}"} | changes,
+        )
+        for i, (value, rounds) in enumerate(zip(values, times))
+    ]
 
 
 class Sweeps(unittest.TestCase):
@@ -295,13 +282,9 @@ class Sweeps(unittest.TestCase):
 
     def test_other_answers_and_other_bounds(self):
         times = [ONE_MS, TWO_MS, TWO_MS]
-        cells = swept("seed_threshold", ["0", "1", "2"], times)
-        for i, cell in enumerate(cells):
-            cell.recorded.pairs = Answer(3 + i, "1", "2")
+        cells = swept("seed_threshold", ["0", "1", "2"], times, pairs=3)
         self.assertEqual(sweeps_of(cells)[0]["title"], "Answers differ: these times are of different work")
-        cells = swept("k", ["6", "8", "18"], times)
-        for i, cell in enumerate(cells):
-            cell.recorded.pairs = Answer(3 + i, "1", "2")
+        cells = swept("k", ["6", "8", "18"], times, pairs=3)
         self.assertIn("k = 6 is the fastest", sweeps_of(cells)[0]["title"])
         cells = [
             *swept("seed_threshold", ["0", "1", "2"], times),
@@ -359,8 +342,8 @@ class Conditions(unittest.TestCase):
 
 class Data(unittest.TestCase):
     def test_omits_the_last_cells_with_a_note(self):
-        data = data_of(Records(cells=[cell_of(f"a{i}", ONE_MS) for i in range(200)]), 40_000, "", "")
-        self.assertLess(len(data.json), 50_000)
+        data = data_of(records_of([cell_of(f"a{i}", ONE_MS) for i in range(200)]), 20_000, "", "")
+        self.assertLess(len(data.json), 30_000)
         made = json.loads(data.json)
         self.assertLess(len(made["cells"]), 200)
         self.assertGreater(len(made["cells"]), 10)
@@ -368,12 +351,12 @@ class Data(unittest.TestCase):
         self.assertIn("of 200 cells are left out", data.notes[0])
 
     def test_curves_are_omitted_before_cells(self):
-        cells = [cell_of(f"a{i}", ONE_MS) for i in range(20)]
-        for cell in cells:
-            cell.curve, cell.rounds = [0.123] * 500, [1.5] * 10
-        whole = json.loads(data_of(Records(cells=copy.deepcopy(cells)), 1_000_000, "", "").json)
+        frames = {"frames": {"first": 0, "last": 499}}
+        total = {"total_ns": {"samples": [6e7], "rounds": [0], "frames": [[123456] * 500]}}
+        cells = [cell_of(f"a{i}", [60], **frames, **total) for i in range(20)]
+        whole = json.loads(data_of(records_of(cells), 1_000_000, "", "").json)
         self.assertEqual((whole["notes"], sum(curve is None for curve in whole["curves"])), ([], 0))
-        less = json.loads(data_of(Records(cells=cells), 40_000, "", "").json)
+        less = json.loads(data_of(records_of(cells), 40_000, "", "").json)
         self.assertEqual(len(less["cells"]), 20)
         missing = sum(curve is None for curve in less["curves"])
         self.assertTrue(0 < missing < 20, missing)
@@ -386,9 +369,12 @@ class Data(unittest.TestCase):
 
     def test_common_values_are_stored_once(self):
         made = json.loads(
-            data_of(Records(cells=[cell_of("a", ONE_MS), cell_of("a", TWO_MS)]), 1_000_000, "p", "d").json
+            data_of(records_of([cell_of("a", ONE_MS), cell_of("a", TWO_MS)]), 1_000_000, "p", "d").json
         )
-        self.assertEqual(made["values"], ["text a"])
+        self.assertEqual(
+            [made["values"].count(value) for value in ("a", "pile:bodies=3", {"k": "18", "bodies": "3"})],
+            [1, 1, 1],
+        )
         self.assertEqual((made["program"], made["date"], made["fields"][-1]), ("p", "d", "label"))
         self.assertEqual([row[0] for row in made["cells"]], [0, 0])
 

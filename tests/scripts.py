@@ -283,7 +283,7 @@ class Scripts(ScriptCase):
             "breakdown_ns": None,
             "device_span_ns": None,
         }
-        record["total_ns"] = {**record["total_ns"], "frames": [], "samples": []}
+        record["total_ns"] = {**record["total_ns"], "frames": [], "samples": [], "rounds": []}
         path, count = self.work / "long.jsonl", 100000 if LONG else 1000
         with open(path, "w") as out:
             for i in range(count):

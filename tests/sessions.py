@@ -181,32 +181,8 @@ class Rates(unittest.TestCase):
                 times = 1e7 * numpy.exp(
                     drift + change + random.normal(0, 0.01) + random.normal(0, 0.005, 10) + slow[turn]
                 )
-                bad = frozenset(range(10)) if slow[turn] > 0 else frozenset()
-                own.append(
-                    cells.RecordedCell(
-                        1,
-                        4,
-                        str(key),
-                        "ok",
-                        "",
-                        {},
-                        {},
-                        1,
-                        False,
-                        f"turn {turn}",
-                        None,
-                        10,
-                        dict(enumerate(times)),
-                        None,
-                        None,
-                        "",
-                        "",
-                        False,
-                        disturbed=bad,
-                        all_rounds=10,
-                        disturbed_rounds=len(bad),
-                    )
-                )
+                one = disturbed(record(str(key), times, session=f"turn {turn}"), range(10 * (slow[turn] > 0)))
+                own.append(cells.Cell(one))
             made.append(pooling.pooled(own))
         return cells.RecordedCells("", "", made, [], [], 4, 0, False)
 

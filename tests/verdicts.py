@@ -7,6 +7,7 @@ import json
 import statistics
 import subprocess
 import sys
+import types
 import unittest
 
 from program import PROGRAM, SOURCE
@@ -14,7 +15,7 @@ from validate_records import problems_of_record
 
 sys.path.insert(0, str(SOURCE / "python"))
 from tandem.lines import RecordError
-from tandem.verdicts import RecordedVerdicts, TimedCell, computed, verdict_of
+from tandem.verdicts import RecordedVerdicts, computed, verdict_of
 
 SESSION = "0123456789abcdef"
 
@@ -23,13 +24,14 @@ def timed(cell, session=SESSION):
     by_round = {}
     for number, ns in zip(cell["rounds"], cell["samples"]):
         by_round.setdefault(number, []).append(ns)
-    return TimedCell(
-        cell["key"],
-        {number: statistics.median(own) for number, own in by_round.items()},
-        session,
-        "host",
-        False,
-        cell["digest"],
+    rounds = {number: statistics.median(own) for number, own in by_round.items()}
+    return cell_of(cell["key"], rounds, session, cell["digest"])
+
+
+def cell_of(key, rounds, session=SESSION, pairs=None):
+    """What verdicts need of a Cell."""
+    return types.SimpleNamespace(
+        key=key, rounds=rounds, session=session, pairs=pairs, devices="host", chosen=False
     )
 
 
@@ -113,20 +115,12 @@ class Verdicts(unittest.TestCase):
             [2.0] * 7,
             [1.1, 1.0, 1.1, 1.0, 1.1, 1.0, 1.1],
         )
-        cells = [
-            TimedCell(str(i), dict(enumerate(times)), SESSION)
-            for i, times in enumerate((slow, doubtful, quick))
-        ]
+        cells = [cell_of(str(i), dict(enumerate(times))) for i, times in enumerate((slow, doubtful, quick))]
         self.assertEqual(sorted(computed(cells).leaders()), [1, 2])
         self.assertEqual(
-            computed(
-                [TimedCell("a", {0: 1.0}, SESSION, answer=1), TimedCell("b", {0: 2.0}, SESSION, answer=2)]
-            ).leaders(),
-            [],
+            computed([cell_of("a", {0: 1.0}, pairs=1), cell_of("b", {0: 2.0}, pairs=2)]).leaders(), []
         )
-        self.assertEqual(
-            computed([TimedCell("a", {0: 1.0}, SESSION), TimedCell("b", {0: 2.0}, SESSION)]).leaders(), [0]
-        )
+        self.assertEqual(computed([cell_of("a", {0: 1.0}), cell_of("b", {0: 2.0})]).leaders(), [0])
         self.assertEqual(computed([]).leaders(), [])
 
     def test_bad_lines_are_one_error(self):
@@ -156,7 +150,7 @@ class Verdicts(unittest.TestCase):
 
 
 def timed_of_another_session(cell):
-    return TimedCell(cell.key, cell.rounds, "another", cell.devices, cell.chosen, cell.answer)
+    return cell_of(cell.key, cell.rounds, "another", cell.pairs)
 
 
 if __name__ == "__main__":

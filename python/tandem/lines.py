@@ -6,7 +6,6 @@ import lzma
 import math
 import os
 import re
-import warnings
 
 WHAT_TO_GIVE = "give files that 'tandem run --out' wrote"
 RECORD_AGAIN = "record the cell again"
@@ -117,21 +116,6 @@ def numbered(path, torn, check=_cell):
         raise RecordError(f"{path}: is empty; name a file of records")
 
 
-def each(path, verdict=lambda line, location: None):
-    """Yields every record of a file and "FILE:LINE". Calls `verdict` with each line of kind verdict and its
-    place. Leaves out a last line without an end with a warning. Raises RecordError."""
-
-    def check(text, location):
-        record = parsed(text, location)
-        if not is_verdict(record):
-            return checked_cell(record, location)
-        verdict(record, location)
-        return None
-
-    for number, record in numbered(path, lambda message: warnings.warn(message, stacklevel=4), check):
-        yield record, f"{path}:{number}"
-
-
 def samples_by_round(record):
     """The samples of a record in nanoseconds, by the number of their round."""
     total = record.get("total_ns") or {}
@@ -140,92 +124,3 @@ def samples_by_round(record):
     for number, ns in zip(total.get("rounds", range(len(samples))), samples):
         rounds.setdefault(number, []).append(ns)
     return rounds
-
-
-def continues(more, less):
-    """Whether rounds `more` contain all of `less` and further ones: the same run, continued after an
-    interruption."""
-    return len(more) > len(less) > 0 and all(more.get(number) == samples for number, samples in less.items())
-
-
-def is_partial(record):
-    """Whether a signal ended the cell before it had enough rounds."""
-    return (record.get("sampling") or {}).get("interrupted") is True
-
-
-def program_of(record):
-    """What identifies the program that made a record: commit, whether its tree had changes, and digest of its
-    sources."""
-    environment = record.get("environment") or {}
-    return environment.get("commit") or "", environment.get("dirty"), environment.get("sources") or ""
-
-
-def run_of(record):
-    """A value that is equal for records of one cell in one run of the program; None if the run is unknown."""
-    session = record.get("session")
-    return session and (
-        record["key"],
-        session,
-        tuple(device["id"] for device in record["devices"]),
-        record.get("chosen") is not None,
-    )
-
-
-def merged(paths, verdict=lambda line, location: None):
-    """The records of several files, each with its location and its file, and each result once. Calls
-    `verdict` as each() does. Leaves out copies, records that another record of the same key continues, and
-    records of interrupted cells before a later one that the same program made on the same devices. Raises
-    RecordError for files that cannot be read, and for different records of one cell in one run."""
-    rows = [(record, location, path) for path in paths for record, location in each(path, verdict)]
-    by_key = {}
-    for number, (record, *_) in enumerate(rows):
-        by_key.setdefault(record["key"], []).append(number)
-    dropped = set()
-    for numbers in by_key.values():
-        if len(numbers) > 1:
-            dropped |= _superseded([(number, *rows[number][:2]) for number in numbers])
-    return [row for number, row in enumerate(rows) if number not in dropped]
-
-
-def _superseded(rows):
-    """Numbers of those records of one key that are left out."""
-    rounds, runs, programs, partial = {}, {}, {}, set()
-    for number, record, location in rows:
-        try:
-            rounds[number], runs[number] = samples_by_round(record), run_of(record)
-            programs[number] = (
-                program_of(record),
-                [device["id"] for device in record["devices"]],
-                record.get("status") != "failed",
-            )
-            if is_partial(record):
-                partial.add(number)
-        except (KeyError, TypeError, AttributeError):
-            raise RecordError(
-                f"{location}: a record that lacks fields of its schema; {WHAT_TO_GIVE}"
-            ) from None
-    dropped = {
-        number for number in rounds if any(continues(rounds[other], rounds[number]) for other in rounds)
-    }
-    # A later record that did not fail measures the interrupted cell again.
-    dropped |= {
-        number
-        for number in partial
-        if any(
-            other > number and program == (*programs[number][:2], True) for other, program in programs.items()
-        )
-    }
-    first = {}
-    for number, record, location in rows:
-        run = runs[number]
-        if number in dropped or not run:
-            continue
-        if run not in first:
-            first[run] = record, location
-        elif record == first[run][0]:
-            dropped.add(number)
-        else:
-            raise RecordError(
-                f"{first[run][1]} and {location}: different records of one cell in one run; leave one of them out"
-            )
-    return dropped

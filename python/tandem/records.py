@@ -3,19 +3,19 @@
 
 import dataclasses
 import os
-import statistics
 
 import pandas
 
 from . import cell_rows, lines
-from .cell_rows import at, interval
-from .verdicts import RecordedVerdicts, TimedCell, verdict_of
+from .cell import each, superseded
+from .cell_rows import interval
+from .fields import at
+from .verdicts import RecordedVerdicts, verdict_of
 
 # Types of columns that are no fields of a record; cell_rows.TYPES has the others.
 WHOLE = ("samples", "launches", "waits", "candidate_pairs", "contacts", "pairs_missed")
 TRUTHS = ("disturbed", "partial")
 FIELD_TYPES = {"integer": "Int64", "number": "float64", "boolean": "boolean"}
-PARTS = ("samples", "stages", "kernels", "frames", "errors")  # the tables besides cells
 SPREADS = ("median", "p99", "max")
 WORDS = ("status", "algorithm", "preset", "device", "device_name", "driver", "scene")
 
@@ -43,7 +43,8 @@ class Records:
     p99, max. For false_share (fraction of
         candidates that do not meet) and missed_share (fraction of meeting pairs that are missed), the median
         is the fraction.
-    verdicts: the lines of kind verdict of the files, for verdict().
+    verdicts: the lines of kind verdict of the files, for verdict(). cell_of: the cell.Cell of each row of
+    `cells`, by its index.
     """
 
     cells: pandas.DataFrame
@@ -53,6 +54,7 @@ class Records:
     frames: pandas.DataFrame
     errors: pandas.DataFrame
     verdicts: RecordedVerdicts = dataclasses.field(default_factory=RecordedVerdicts, repr=False)
+    cell_of: dict = dataclasses.field(default_factory=dict, repr=False)
 
     def verdict(self):
         """The Verdict on the cells of this object with a correct answer and times, which the caller has
@@ -60,13 +62,7 @@ class Records:
         Ranked.cell is an index of `cells`. The one that `tandem run` recorded is read where it is of exactly
         these cells."""
         good = self.cells[(self.cells["status"] == "ok") & self.cells["ms"].notna()]
-        samples = self.samples[self.samples["cell"].isin(good.index)]
-        medians = samples.groupby(["cell", "round"], sort=True)["ms"].median()
-        timed = [
-            TimedCell(str(cell.key), medians[number].to_dict(), str(cell.session or ""), str(cell.device))
-            for number, cell in zip(good.index, good.itertuples())
-        ]
-        found = verdict_of(timed, self.verdicts)
+        found = verdict_of([self.cell_of[number] for number in good.index], self.verdicts)
         return dataclasses.replace(
             found, cells=tuple(dataclasses.replace(one, cell=good.index[one.cell]) for one in found.cells)
         )
@@ -78,98 +74,80 @@ class Records:
             chosen,
             *(table[table["cell"].isin(chosen.index)] for table in (getattr(self, name) for name in PARTS)),
             self.verdicts,
+            self.cell_of,
         )
 
 
-class _Cell:
-    """The rows of one record."""
+def _samples(cell):
+    samples = at(cell.record, "total_ns", "samples") or []
+    # Before schema 3 each sample is a round.
+    rounds = at(cell.record, "total_ns", "rounds") or range(len(samples))
+    return [
+        {"sample": i, "round": number, "ms": ns / cell.frames / 1e6}
+        for i, (ns, number) in enumerate(zip(samples, rounds))
+    ]
 
-    def __init__(self, number, record):
-        self.number, self.record = number, record
-        self.count = cell_rows.frames_of(record)
 
-    def ms(self, ns):
-        return cell_rows.milliseconds(ns, self.count)
+def _stages(cell):
+    return [
+        {
+            "stage": name,
+            **interval("device_ms", stage.get("device_ns"), cell.frames),
+            **interval("host_ms", stage.get("host_ns"), cell.frames),
+            **{what: stage.get(what) for what in ("launches", "waits", "bytes")},
+        }
+        for name, stage in (cell.record["stages"] or {}).items()
+    ]
 
-    def samples(self):
-        total = self.record["total_ns"] or {}
-        samples = total.get("samples", [])
-        # Before schema 3 each sample is a round.
-        rounds = total.get("rounds", range(len(samples)))
-        return [
-            {"cell": self.number, "sample": i, "round": number, "ms": self.ms(ns)}
-            for i, (ns, number) in enumerate(zip(samples, rounds))
-        ]
 
-    def stages(self):
-        return [
-            {
-                "cell": self.number,
-                "stage": name,
-                **interval("device_ms", stage.get("device_ns"), self.count),
-                **interval("host_ms", stage.get("host_ns"), self.count),
-                **{what: stage.get(what) for what in ("launches", "waits", "bytes")},
-            }
-            for name, stage in (self.record["stages"] or {}).items()
-        ]
+def _kernels(cell):
+    used = {}
+    for kernel in cell.record.get("kernels") or []:
+        row = used.setdefault(kernel["entry"], {})
+        for what in ("registers", "local_bytes", "spill_bytes", "stack_bytes"):
+            known = [value for value in (row.get(what), kernel.get(what)) if value is not None]
+            row[what] = max(known, default=None)
+    times = cell.record.get("kernel_times") or {}
+    return [
+        {
+            "kernel": name,
+            **interval("device_ms", at(times, name, "device_ns"), cell.frames),
+            "launches": at(times, name, "launches"),
+            **used.get(name, {}),
+        }
+        for name in {**times, **used}
+    ]
 
-    def kernels(self):
-        used = {}
-        for kernel in self.record.get("kernels") or []:
-            row = used.setdefault(kernel["entry"], {})
-            for what in ("registers", "local_bytes", "spill_bytes", "stack_bytes"):
-                known = [value for value in (row.get(what), kernel.get(what)) if value is not None]
-                row[what] = max(known, default=None)
-        times = self.record.get("kernel_times") or {}
-        return [
-            {
-                "cell": self.number,
-                "kernel": name,
-                **interval("device_ms", at(times, name, "device_ns"), self.count),
-                "launches": at(times, name, "launches"),
-                **used.get(name, {}),
-            }
-            for name in {**times, **used}
-        ]
 
-    def frames(self):
-        replays = at(self.record, "total_ns", "frames") or []
-        work = self.record.get("work") or {}
-        rows = []
-        for i in range(self.count):
-            times = [replay[i] for replay in replays if i < len(replay)]
-            median = statistics.median(times) if times else None
-            rows.append(
-                {
-                    "cell": self.number,
-                    "frame": self.record["frames"]["first"] + i,
-                    "ms": None if median is None else median / 1e6,
-                }
-                | {
-                    name: work[name][i] if isinstance(work.get(name), list) and i < len(work[name]) else None
-                    for name in ("body_pairs", "candidate_pairs", "contacts")
-                }
-            )
-        return rows
+def _frames(cell):
+    columns = {"ms": cell.frame_ms} | {
+        name: cell.work(name) or [] for name in ("body_pairs", "candidate_pairs", "contacts")
+    }
+    return [
+        {"frame": cell.first_frame + i}
+        | {name: values[i] if i < len(values) else None for name, values in columns.items()}
+        for i in range(cell.frames)
+    ]
 
-    def errors(self):
-        truth = at(self.record, "error", "truth")
-        if not isinstance(truth, dict):
-            return []
-        missed = truth["missed_touching"] + truth["missed_overlapping"]
-        meeting = truth["touching"] + truth["overlapping"] + missed
-        fractions = {"false_share": (truth["false"], truth["candidates"]), "missed_share": (missed, meeting)}
-        rows = [
-            {"cell": self.number, "error": name, "median": part / whole}
-            for name, (part, whole) in fractions.items()
-            if whole
-        ]
-        contacts = truth.get("contacts") or {}
-        return rows + [
-            {"cell": self.number, "error": name, **{which: spread.get(which) for which in SPREADS}}
-            for name, spread in contacts.items()
-            if isinstance(spread, dict)
-        ]
+
+def _errors(cell):
+    truth = cell.truth
+    if truth is None:
+        return []
+    fractions = {
+        "false_share": (truth["false"], truth["candidates"]),
+        "missed_share": (cell.missed, cell.meeting),
+    }
+    rows = [{"error": name, "median": part / whole} for name, (part, whole) in fractions.items() if whole]
+    return rows + [
+        {"error": name, **{which: spread.get(which) for which in SPREADS}}
+        for name, spread in (truth.get("contacts") or {}).items()
+        if isinstance(spread, dict)
+    ]
+
+
+# The tables besides cells, and what makes the rows of a cell.
+PARTS = {"samples": _samples, "stages": _stages, "kernels": _kernels, "frames": _frames, "errors": _errors}
 
 
 def _typed(column):
@@ -222,39 +200,37 @@ def read(files):
     if not paths:
         raise lines.RecordError("no file is named; name files of records")
     verdicts = RecordedVerdicts()
-    records = lines.merged(paths, verdicts.add)
+    cells = [cell for path in paths for cell in each(path, verdicts.add)]
+    left_out = superseded(cells)
+    cells = [cell for number, cell in enumerate(cells) if number not in left_out]
     try:
-        return _records(records, verdicts)
+        return _records(cells, verdicts)
     except lines.RecordError:
         raise
     except lines.FIELD_ERRORS:  # pandas names no line
-        for one in records:
+        for cell in cells:
             try:
-                _records([one], verdicts)
+                _records([cell], verdicts)
             except lines.RecordError:
                 raise
             except lines.FIELD_ERRORS:
                 raise lines.RecordError(
-                    f"{one[1]}: a record with a field that its schema does not allow; {lines.WHAT_TO_GIVE}"
+                    f"{cell.location}: a record with a field that its schema does not allow; {lines.WHAT_TO_GIVE}"
                 ) from None
         raise
 
 
-def _records(records, verdicts):
-    """Records of rows of lines.merged()."""
+def _records(cells, verdicts):
+    """Records of Cells."""
     rows = {name: [] for name in ("cells", *PARTS)}
-    for record, location, path in records:
+    for number, cell in enumerate(cells):
         try:
-            cell = _Cell(len(rows["cells"]), record)
-            rows["cells"].append(
-                cell_rows.row(record)
-                | {"file": os.fspath(path), "partial": bool(at(record, "sampling", "interrupted"))}
-            )
-            for name in PARTS:
-                rows[name] += getattr(cell, name)()
+            rows["cells"].append(cell_rows.row(cell) | {"file": cell.path, "partial": cell.is_partial})
+            for name, rows_of in PARTS.items():
+                rows[name] += [{"cell": number, **row} for row in rows_of(cell)]
         except lines.FIELD_ERRORS:
             raise lines.RecordError(
-                f"{location}: a record that lacks fields of its schema; {lines.WHAT_TO_GIVE}"
+                f"{cell.location}: a record that lacks fields of its schema; {lines.WHAT_TO_GIVE}"
             ) from None
     device = ("device_ms", "device_ms_low", "device_ms_high")
     return Records(
@@ -275,4 +251,5 @@ def _records(records, verdicts):
         _table(rows["frames"], ("frame", "body_pairs", "candidate_pairs", "contacts"), (), ("ms",)),
         _table(rows["errors"], (), ("error",), SPREADS),
         verdicts,
+        dict(enumerate(cells)),
     )

@@ -14,24 +14,6 @@ ONE = resampling.Ratio(1.0, 1.0, 1.0, 0.0)
 
 
 @dataclasses.dataclass(frozen=True)
-class TimedCell:
-    """What a verdict needs of a record. `session`, `devices` (ids joined by +), `key` and `chosen` (by
-    --algorithm auto) identify it. `rounds`: the median of each round in nanoseconds, by number. `answer`:
-    equal for equal candidate pairs; None if unknown."""
-
-    key: str
-    rounds: dict
-    session: str = ""
-    devices: str = ""
-    chosen: bool = False
-    answer: object = None
-
-    @property
-    def median(self):
-        return statistics.median(self.rounds.values())
-
-
-@dataclasses.dataclass(frozen=True)
 class Ranked:
     """A cell, compared with the fastest. cell: its index. ratio: its time to that of the fastest.
     has_interval: there are at least two rounds. is_told_apart: the interval excludes 1."""
@@ -65,6 +47,10 @@ class Verdict:
         ]
 
 
+def _median(cell):
+    return statistics.median(cell.rounds.values())
+
+
 def _compared(number, base, cell):
     """Rounds of equal number are pairs within one session, because they were measured side by side."""
     if base.session and base.session == cell.session:
@@ -74,16 +60,17 @@ def _compared(number, base, cell):
                 [base.rounds[at] for at in common], [cell.rounds[at] for at in common]
             )
             return Ranked(number, ratio, len(common) > 1)
-        value = cell.median / base.median
+        value = _median(cell) / _median(base)
         return Ranked(number, resampling.Ratio(value, value, value, 0.0), False)
     ratio = resampling.unpaired_ratio(list(base.rounds.values()), list(cell.rounds.values()))
     return Ranked(number, ratio, min(len(base.rounds), len(cell.rounds)) > 1)
 
 
-def computed(cells):
-    """The Verdict of TimedCells with at least one round each, by the rule of harness/record/verdict.h."""
-    order = sorted(range(len(cells)), key=lambda number: (cells[number].median, cells[number].key))
-    answers = {cell.answer for cell in cells} - {None}
+def computed(cells, same_work=True):
+    """The Verdict of Cells with at least one round each, by the rule of harness/record/verdict.h. same_work:
+    they should have equal pairs."""
+    order = sorted(range(len(cells)), key=lambda number: (_median(cells[number]), cells[number].key))
+    answers = {cell.pairs for cell in cells} - {None} if same_work else ()
     if not order:
         return Verdict()
     first, *rest = order
@@ -123,7 +110,7 @@ class RecordedVerdicts:
             ) from None
 
     def of(self, cells):
-        """The recorded Verdict of exactly these TimedCells; None if there is none."""
+        """The recorded Verdict of exactly these Cells; None if there is none."""
         if not cells or len({(cell.session, cell.devices) for cell in cells}) > 1:
             return None
         identity = _identity(cells)
@@ -145,7 +132,7 @@ def _recorded(cell):
     ), has_interval
 
 
-def verdict_of(cells, recorded=None):
-    """The Verdict of TimedCells with at least one round each: the recorded one if there is one of exactly
-    these cells, otherwise computed."""
-    return (recorded.of(cells) if recorded else None) or computed(cells)
+def verdict_of(cells, recorded=None, same_work=True):
+    """The Verdict of Cells with at least one round each: the recorded one if there is one of exactly these
+    cells, otherwise computed."""
+    return (recorded.of(cells) if recorded else None) or computed(cells, same_work)

@@ -26,7 +26,7 @@ from measured import (
     with_interval,
     with_width,
 )
-from tandem import markdown
+from tandem import cell, markdown
 from tandem.paper.quantities import batch_size
 
 METHODS = {
@@ -58,7 +58,7 @@ class Published(Cell):
     def __init__(self, record):
         super().__init__(record)
         is_batched = record["algorithm"] == "gproximity"
-        self.batch = batch_size(record) if is_batched else 0
+        self.batch = batch_size(cell.Cell(record)) if is_batched else 0
         self.body_pairs = record["work"]["body_pairs"][0]
         self.batches = self.batches_of(self.body_pairs)
         self.is_part = record["settings"].get("most_body_pairs", "0") != "0"

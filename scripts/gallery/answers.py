@@ -11,14 +11,14 @@ NARROW_PHASE = ("contact_rule", "decision")
 
 def work_of(source):
     """A value that is equal for records whose candidate pairs have to be equal."""
-    recorded, record = source.shown.recorded, source.record
-    settings = recorded.settings
+    cell = source.cell
+    settings = cell.described
     narrow = [settings.get(name) for name in NARROW_PHASE] if settings.get("output") == "contacts" else []
     return (
-        source.shown.scene_digest,
-        record["frames"]["first"],
-        record["frames"]["last"],
-        recorded.names["handling"],
+        cell.scene_digest,
+        cell.first_frame,
+        cell.last_frame,
+        cell.names["handling"],
         *(settings.get(name, usual) for name, usual in (BOUNDS | FURTHER).items()),
         settings.get("broad") == "sphere_boxes",
         *narrow,
@@ -32,15 +32,15 @@ def _known(sources):
     for is_submitted in (False, True):
         digests = {}
         for source in sources:
-            recorded = source.shown.recorded
+            cell = source.cell
             if (
                 source.is_submitted == is_submitted
-                and recorded.status == "ok"
-                and source.record["agreement"]
-                and recorded.pairs
-                and recorded.pairs.count
+                and cell.status == "ok"
+                and cell.record["agreement"]
+                and cell.pairs
+                and cell.pairs.count
             ):
-                digests.setdefault(work_of(source), set()).add(recorded.pairs)
+                digests.setdefault(work_of(source), set()).add(cell.pairs)
         for work, own in digests.items():
             found.setdefault(work, own)
     return found
@@ -52,16 +52,16 @@ def judge(sources):
     work."""
     known, unchecked = _known(sources), set()
     for source in sources:
-        recorded = source.shown.recorded
-        if recorded.status != "ok" or recorded.pairs is None or recorded.pairs.count == 0:
-            if recorded.status == "ok" and not source.record["agreement"]:
+        cell = source.cell
+        if cell.status != "ok" or cell.pairs is None or cell.pairs.count == 0:
+            if cell.status == "ok" and not cell.record["agreement"]:
                 unchecked.add(source.place)
             continue
         digests = known.get(work_of(source))
         if digests is None:
             unchecked.add(source.place)
-        elif len(digests) > 1 or recorded.pairs not in digests or _contradicts_itself(source.record):
-            recorded.status = "wrong"
+        elif len(digests) > 1 or cell.pairs not in digests or _contradicts_itself(cell.record):
+            cell.status = "wrong"
     return unchecked
 
 

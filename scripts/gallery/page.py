@@ -3,11 +3,12 @@
 
 import html
 
+from tandem.report.conditions import conditions_text, sampling_text
 from tandem.report.groups import groups_of
 from tandem.report.leads import interval_text
 from tandem.report.numbers import digits
-from tandem.report.sentences import group_sentences, milliseconds, summary_sentences
-from tandem.report.shown_cells import FIELDS
+from tandem.report.sentences import group_sentences, summary_sentences
+from tandem.report.rows import commit, interval
 from tandem.text_lines import visible
 
 HEAD = """<!DOCTYPE html>
@@ -40,7 +41,6 @@ COLUMNS = (
     "commit",
     "record",
 )
-FIELD = {name: column for column, name in enumerate(FIELDS)}
 
 
 def escaped(text):
@@ -49,27 +49,27 @@ def escaped(text):
 
 
 def _time(cell):
-    time = cell.row[FIELD["ms"]]
+    time = interval(cell)
     return (
         ""
         if time is None or not cell.rounds
-        else f"{digits(milliseconds(cell))} [{digits(time[1])}, {digits(time[2])}]"
+        else f"{digits(cell.median_ms)} [{digits(time[1])}, {digits(time[2])}]"
     )
 
 
 def _row(source, rank, label, ratio):
-    cell = source.shown
+    cell = source.cell
     place = f"{source.place}{', submitted' if source.is_submitted else ''}"
-    pairs = cell.recorded.pairs.count if cell.recorded.pairs else ""
+    pairs = cell.pairs.count if cell.pairs else ""
     texts = [
         rank,
         label,
         _time(cell),
         ratio,
         f"{pairs:,}" if pairs != "" else "",
-        cell.row[FIELD["conditions"]],
-        cell.row[FIELD["sampling"]],
-        cell.row[FIELD["commit"]],
+        conditions_text(cell.record),
+        sampling_text(cell.record),
+        commit(cell),
         place,
     ]
     cells = "".join(
@@ -99,13 +99,13 @@ def _group(group, sources):
             for rank, one in enumerate(group.ranked, 1)
         ]
     ranked = {one.cell for one in group.ranked} if rows else set()
-    rest = [number for number in group.cells if number not in ranked and not sources[number].shown.is_older]
-    states = {number: sources[number].shown.recorded.status for number in rest}
+    rest = [number for number in group.cells if number not in ranked and not sources[number].cell.is_older]
+    states = {number: sources[number].cell.status for number in rest}
     rows += [
         _row(sources[number], "answers differ" if state == "ok" else state, labels[number], "")
         for number, state in states.items()
     ]
-    sentence = group_sentences(group, [source.shown for source in sources])
+    sentence = group_sentences(group, [source.cell for source in sources])
     return (
         f"<section>\n<h2>{escaped(group.title)}</h2>\n<p>{escaped(sentence)}</p>\n{_table(rows)}</section>\n"
     )
@@ -115,15 +115,15 @@ def html_of(sources, unchecked, refused):
     """The page. unchecked: places of records that are shown apart and not ranked; refused: messages about
     submitted lines."""
     compared = [source for source in sources if source.place not in unchecked]
-    apart = [source for source in sources if source.place in unchecked and not source.shown.is_older]
-    shown = [source.shown for source in compared]
-    groups = sorted(groups_of(shown), key=lambda group: group.title)
+    apart = [source for source in sources if source.place in unchecked and not source.cell.is_older]
+    cells = [source.cell for source in compared]
+    groups = sorted(groups_of(cells), key=lambda group: group.title)
     submitted = sum(source.is_submitted for source in sources)
     text = (
         HEAD
         + f"<p>{len(sources)} records of cells, {submitted} of them submitted. Cells of one table do the same work on the same devices.</p>\n"
     )
-    text += "".join(f"<p>{escaped(sentence)}</p>\n" for sentence in summary_sentences(groups, shown))
+    text += "".join(f"<p>{escaped(sentence)}</p>\n" for sentence in summary_sentences(groups, cells))
     if refused:
         text += (
             "<section>\n<h2>Refused lines</h2>\n<ul>\n"
@@ -132,7 +132,7 @@ def html_of(sources, unchecked, refused):
         )
     text += "".join(_group(group, compared) for group in groups)
     if apart:
-        rows = [_row(source, "not compared", f"{source.shown.recorded.key}", "") for source in apart]
+        rows = [_row(source, "not compared", f"{source.cell.key}", "") for source in apart]
         text += f"<section>\n<h2>Not compared</h2>\n<p>Nothing checks these answers, so that they are not ranked.</p>\n{_table(rows)}</section>\n"
     return (
         text

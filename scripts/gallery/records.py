@@ -8,8 +8,8 @@ import re
 import subprocess
 
 from tandem import kinds, lines
+from tandem.cell import Cell
 from tandem.errors import BadUse
-from tandem.report.shown_cells import shown_cell
 from tandem.text_lines import one_line
 from validate_records import problems_of_record
 
@@ -19,11 +19,9 @@ ABBREVIATION = re.compile(r"[0-9a-f]{7,40}\Z")
 
 @dataclasses.dataclass
 class Source:
-    """A record of a cell: what the page shows of it (`shown`), the record, its place FILE:LINE, and whether
-    it was submitted."""
+    """A record of a cell, its place FILE:LINE, and whether it was submitted."""
 
-    shown: object
-    record: dict
+    cell: Cell
     place: str
     is_submitted: bool
 
@@ -94,14 +92,9 @@ def add_file(gathered, path, name, commits=None):
     and for a file that cannot be read."""
     torn = gathered.refused.append if commits is not None else lambda message: None
     for number, record in lines.numbered(str(path), torn, _check_of(gathered, commits)):
-        try:
-            shown = shown_cell(record, str(path), number, 0)
-        except lines.FIELD_ERRORS as problem:
-            raise lines.RecordError(
-                f"{path}:{number}: a record that lacks fields of its schema ({problem!r})"
-            ) from None
-        if not any(record == other.record for other in gathered.sources):
-            gathered.sources.append(Source(shown, record, f"{name}:{number}", commits is not None))
+        if not any(record == other.cell.record for other in gathered.sources):
+            source = Source(Cell(record, path, number), f"{name}:{number}", commits is not None)
+            gathered.sources.append(source)
 
 
 def committed_files(results):
@@ -127,10 +120,8 @@ def mark_older(sources):
     of several people."""
     newest = {}
     for source in sources:
-        key = source.place.rpartition(":")[0], source.shown.recorded.key
-        if key not in newest or source.shown.recorded.status == "ok":
+        key = source.place.rpartition(":")[0], source.cell.key
+        if key not in newest or source.cell.status == "ok":
             newest[key] = source
     for source in sources:
-        source.shown.is_older = (
-            newest[source.place.rpartition(":")[0], source.shown.recorded.key] is not source
-        )
+        source.cell.is_older = newest[source.place.rpartition(":")[0], source.cell.key] is not source

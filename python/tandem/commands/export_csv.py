@@ -8,8 +8,8 @@ not take it for a formula; control characters of texts are escapes. Numbers are 
 import json
 
 from .. import cell_rows, lines
+from ..cell import Cell
 from ..csv_fields import text_field
-from ..comparison.cells import recorded_cell
 from ..errors import BadUse
 from ..files import check_output
 from . import Parser, run, warn
@@ -23,9 +23,10 @@ def _parsed(arguments):
 
 
 def _row(record, path, line):
-    recorded_cell(record, path, line)  # raises an error for anything else
     try:
-        return cell_rows.row(record)
+        return cell_rows.row(Cell(record, path, line))
+    except lines.RecordError:
+        raise
     except lines.FIELD_ERRORS:
         raise lines.RecordError(
             f"{path}:{line}: a record that lacks fields of its schema; {lines.WHAT_TO_GIVE}"

@@ -7,7 +7,7 @@ import math
 import statistics
 
 from .. import rank_ratios, rank_tests, resampling
-from .cells import RecordedCell
+from ..cell import Cell
 from .pooling import is_minority, pooled
 
 POWER = 0.8  # probability that the least effect is detected
@@ -27,7 +27,7 @@ MAX_ROUNDS = 1000  # upper limit of rounds_needed
 
 
 @dataclasses.dataclass
-class ComparedCell:
+class Compared:
     """One cell in both files.
 
     verdict: slower or faster: p is below the level and the ratio is beyond the threshold; within_threshold:
@@ -45,8 +45,8 @@ class ComparedCell:
     Where `before.sessions` > 0, all of this is about sessions instead of rounds.
     """
 
-    before: RecordedCell
-    after: RecordedCell
+    before: Cell
+    after: Cell
     threshold: float
     paired: bool
     common: int
@@ -70,7 +70,7 @@ class ComparedCell:
 
 @dataclasses.dataclass
 class Matched:
-    """cells: ComparedCells in the order of the old file. only_old, only_new: RecordedCells without a
+    """cells: Compared in the order of the old file. only_old, only_new: Cells without a
     counterpart. tested: number of cells in the correction."""
 
     cells: list
@@ -133,7 +133,7 @@ def _compared(before, after, threshold, undisturbed=False):
     )
     old, new = [before.rounds[number] for number in units[0]], [after.rounds[number] for number in units[1]]
     common = sum(number in after.rounds for number in before.rounds)
-    cell = ComparedCell(
+    cell = Compared(
         before,
         after,
         threshold,

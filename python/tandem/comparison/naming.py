@@ -32,7 +32,7 @@ def _numbered(cells, labels):
 
 
 def label(cells):
-    """A text for each RecordedCell, in order, and one text with the values that all share. Texts of different
+    """A text for each Cell, in order, and one text with the values that all share. Texts of different
     keys differ. A text has those names, and then those settings in alphabetical order, that distinguish cells
     which the values before do not."""
     if not cells:
@@ -42,9 +42,9 @@ def label(cells):
         texts = [cell.names[name] for cell in cells]
         if name != LAST and not growing.add(texts) and len(set(texts)) == 1 and first:
             common.append(first)
-    for setting in sorted({name for cell in cells for name in cell.settings}):
+    for setting in sorted({name for cell in cells for name in cell.described}):
         growing.add(
-            [f"{setting}={cell.settings[setting]}" if setting in cell.settings else "" for cell in cells]
+            [f"{setting}={cell.described[setting]}" if setting in cell.described else "" for cell in cells]
         )
     growing.add([cell.names[LAST] for cell in cells])
     labels = [text or cells[0].names["algorithm"] for text in growing.labels]

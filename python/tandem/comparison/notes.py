@@ -240,9 +240,9 @@ def _differences(before, after):
     found += _device_differences(before, after)
 
     def text(cell, name):
-        return f"{name}={cell.settings[name]}" if name in cell.settings else f"no {name}"
+        return f"{name}={cell.described[name]}" if name in cell.described else f"no {name}"
 
-    for name in sorted(before.settings.keys() | after.settings.keys()):
+    for name in sorted(before.described.keys() | after.described.keys()):
         if text(before, name) != text(after, name):
             found.append(f"{text(before, name)} / {text(after, name)}")
     return found

@@ -3,12 +3,12 @@
 and the state of the machine, so that they differ less than sessions do: a test over all rounds would find
 changes where there are none. The unit is then the session."""
 
-import dataclasses
+import copy
 import statistics
 
 
 def counting(cells):
-    """Those of the RecordedCells of one key, in the order of their lines, that count: the sessions of the
+    """Those of the Cells of one key, in the order of their lines, that count: the sessions of the
     program that wrote the last one. The last record of a session counts, because it continues the ones
     before. Records without a session count as one session. The record of an interrupted cell counts only if
     it is the last one: a later session has continued the cell, or measured it again."""
@@ -33,16 +33,14 @@ def _time(cell):
 
 
 def pooled(cells):
-    """One RecordedCell whose `rounds` are these sessions. A session is disturbed if at least half of its
+    """One Cell whose `rounds` are these sessions. A session is disturbed if at least half of its
     rounds are."""
     bad = [cell for cell in cells if not is_minority(len(cell.disturbed), len(cell.rounds))]
-    return dataclasses.replace(
-        cells[-1],
-        rounds={cell.session: _time(cell) for cell in cells},
-        disturbed=frozenset(cell.session for cell in bad),
-        reason=next((cell.reason for cell in cells if cell.reason), ""),
-        sessions=len(cells),
-        samples=sum(cell.samples for cell in cells),
-        all_rounds=sum(cell.all_rounds for cell in cells),
-        disturbed_rounds=sum(cell.disturbed_rounds for cell in cells),
-    )
+    made = copy.copy(cells[-1])
+    made.rounds = {cell.session: _time(cell) for cell in cells}
+    made.disturbed = frozenset(cell.session for cell in bad)
+    made.reason = next((cell.reason for cell in cells if cell.reason), "")
+    made.sessions = len(cells)
+    for name in ("samples", "all_rounds", "disturbed_rounds"):
+        setattr(made, name, sum(getattr(cell, name) for cell in cells))
+    return made

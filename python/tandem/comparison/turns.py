@@ -273,9 +273,11 @@ class Turns:
             read = read_cells(path)
             records += read.records
             for cell in read.cells:
-                by_key.setdefault(cell.key, []).append(dataclasses.replace(cell, session=f"turn {turn}"))
+                cell.session = f"turn {turn}"
+                by_key.setdefault(cell.key, []).append(cell)
             for cell in read.left_out:
-                left_out.setdefault(cell.key, dataclasses.replace(cell, line=turn))
+                cell.line = turn
+                left_out.setdefault(cell.key, cell)
         cells = [pooled(found) for found in by_key.values()]
         commits = list(dict.fromkeys(cell.commit for cell in cells))
         return RecordedCells(

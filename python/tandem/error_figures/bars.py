@@ -5,6 +5,7 @@ import matplotlib.pyplot as plt
 
 from .panels import note
 from .points import OF_CONTACTS, swept, words
+from .points import kind as kind_of
 
 KINDS = ("random", "resting", "constructed")
 MAX_BARS = 200  # per kind of scene
@@ -14,8 +15,9 @@ def _sums_of(own):
     """Numbers of missed, meeting, false and candidate pairs of a configuration, and the mean time over its
     scenes."""
     return (
-        *(sum(getattr(p, name) for p in own) for name in ("missed", "meeting", "false", "candidates")),
-        sum(p.ms for p in own) / len(own),
+        *(sum(getattr(p, name) for p in own) for name in ("missed", "meeting")),
+        *(sum(p.truth[name] for p in own) for name in ("false", "candidates")),
+        sum(p.ms() for p in own) / len(own),
     )
 
 
@@ -49,18 +51,18 @@ def _column(column, configurations):
 def _configurations(points):
     """Points as {kind: {configuration: points}}, in the order of the bars."""
     rest = swept(points, ("k", "precision", "rounding"))
-    kinds = {kind: {} for kind in KINDS if any(p.kind == kind for p in points)}
+    kinds = {kind: {} for kind in KINDS if any(kind_of(p) == kind for p in points)}
     for p in sorted(
         points,
         key=lambda p: (
-            int(p.settings["k"]),
-            p.settings["precision"] == "double",
-            p.settings["rounding"],
+            int(p.asked["k"]),
+            p.asked["precision"] == "double",
+            p.asked["rounding"],
             words(p, rest),
         ),
     ):
-        kinds[p.kind].setdefault(
-            (p.settings["k"], p.settings["precision"], p.settings["rounding"], words(p, rest)), []
+        kinds[kind_of(p)].setdefault(
+            (p.asked["k"], p.asked["precision"], p.asked["rounding"], words(p, rest)), []
         ).append(p)
     return kinds
 
@@ -68,9 +70,9 @@ def _configurations(points):
 def draw(points):
     """The figure and its points."""
     base = {
-        s: points[0].settings.get(s) for s in OF_CONTACTS
+        s: points[0].asked.get(s) for s in OF_CONTACTS
     }  # the bars do not depend on contacts: one value of each of these settings is enough
-    points = [p for p in points if all(p.settings.get(s) == v for s, v in base.items())]
+    points = [p for p in points if all(p.asked.get(s) == v for s, v in base.items())]
     kinds = _configurations(points)
     width = max(4.5, *(0.14 * min(MAX_BARS, len(own)) for own in kinds.values()))
     figure, axes = plt.subplots(

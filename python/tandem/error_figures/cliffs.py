@@ -6,20 +6,18 @@ import textwrap
 import matplotlib.pyplot as plt
 
 from .panels import note
-from .points import OF_CONTACTS, sweep_text, swept
+from .points import OF_CONTACTS, depth, difficulty, family, sweep_text, swept
 
 
 def _rule_of(point):
-    return " ".join(
-        point.settings[s] for s in ("contact_rule", "decision", "precision") if s in point.settings
-    )
+    return " ".join(point.asked[s] for s in ("contact_rule", "decision", "precision") if s in point.asked)
 
 
 def _worst(points):
     """The largest value at each difficulty, of pairs (difficulty, value)."""
     line = {}
-    for difficulty, value in points:
-        line[difficulty] = max(value, line.get(difficulty, value))
+    for at, value in points:
+        line[at] = max(value, line.get(at, value))
     return sorted(line.items())
 
 
@@ -29,7 +27,7 @@ def _lines(own, bounds_of, bounds, rules):
         (
             f"C{i % 10}-o",
             f"missed, {name}",
-            _worst((p.difficulty, p.missed / max(p.meeting, 1)) for p in own if bounds_of(p) == name),
+            _worst((difficulty(p), p.missed / max(p.meeting, 1)) for p in own if bounds_of(p) == name),
         )
         for i, name in enumerate(bounds)
     ]
@@ -37,7 +35,7 @@ def _lines(own, bounds_of, bounds, rules):
         (
             f"C{5 + i % 5}--",
             f"depth, {name}",
-            _worst((p.difficulty, p.depth) for p in own if _rule_of(p) == name and p.depth is not None),
+            _worst((difficulty(p), depth(p)) for p in own if _rule_of(p) == name and depth(p) is not None),
         )
         for i, name in enumerate(rules)
     ]
@@ -53,7 +51,7 @@ def _panel(panel, own, lines):
         panel.plot(*zip(*line), style, ms=2.5, lw=0.8, label=label)
     # Safe and directed bounds are certified to miss nothing at any difficulty (algorithms/bounds/README.md).
     panel.axhspan(-5e-9, 2e-9, color="0.85", label="certified: safe, directed")
-    difficulties = sorted({p.difficulty for p in own})
+    difficulties = sorted({difficulty(p) for p in own})
     if difficulties[0] > 0 and difficulties[-1] >= 100 * difficulties[0]:
         panel.set_xscale("log")
     panel.set_yscale("symlog", linthresh=1e-8)
@@ -66,9 +64,9 @@ def _families(points):
     """Points by family, for families with several difficulties."""
     families = {}
     for p in points:
-        if p.family and p.difficulty is not None:
-            families.setdefault(p.family, []).append(p)
-    return {name: own for name, own in families.items() if len({p.difficulty for p in own}) > 1}
+        if family(p) and difficulty(p) is not None:
+            families.setdefault(family(p), []).append(p)
+    return {name: own for name, own in families.items() if len({difficulty(p) for p in own}) > 1}
 
 
 def _title(figure, axes, points, bounds_settings, columns):
@@ -92,7 +90,7 @@ def draw(points):
         return None
     points = [p for own in families.values() for p in own]
     bounds_settings = ["rounding", *(name for name in ("axes", "placement") if name in swept(points))]
-    bounds_of = lambda p: " ".join(p.settings[name] for name in bounds_settings if name in p.settings)
+    bounds_of = lambda p: " ".join(p.asked[name] for name in bounds_settings if name in p.asked)
     columns = min(4, len(families))
     rows = -(-len(families) // columns)
     figure, axes = plt.subplots(
@@ -102,8 +100,8 @@ def draw(points):
         panel.axis("off")
     # Equal bounds and rules have equal colours in all families.
     bounds, rules = sorted({bounds_of(p) for p in points}), sorted({_rule_of(p) for p in points})
-    for panel, (family, own) in zip(axes.flat, families.items()):
+    for panel, (name, own) in zip(axes.flat, families.items()):
         _panel(panel, own, _lines(own, bounds_of, bounds, rules))
-        panel.set_title(family, fontsize=8)
+        panel.set_title(name, fontsize=8)
     _title(figure, axes, points, bounds_settings, columns)
     return figure, points

@@ -9,7 +9,7 @@ import matplotlib.pyplot as plt
 from ..csv_fields import fields
 from ..files import check_output, save_svg
 from . import bars, cliffs, pareto
-from .points import swept
+from .points import row, swept
 
 SHOWN = ("k", "axes", "precision", "rounding", "decision", "contact_rule")
 STYLE = {
@@ -23,12 +23,13 @@ STYLE = {
 
 def _write_data(path, points):
     settings = [*SHOWN, *(name for name in swept(points, ("cell", "device")) if name not in SHOWN)]
-    row = list(points[0].row())
-    first, last = row[: row.index("cell") + 1], row[row.index("ms") :]
+    rows = [row(p) for p in points]
+    names = list(rows[0])
+    first, last = names[: names.index("cell") + 1], names[names.index("ms") :]
     with open(path, "w", newline="") as file:
         writer = csv.DictWriter(file, [*first, *settings, *last], extrasaction="ignore", restval="")
         writer.writeheader()
-        writer.writerows(fields(p.row()) for p in points)
+        writer.writerows(map(fields, rows))
 
 
 def _save(folder, name, drawn):

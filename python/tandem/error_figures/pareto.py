@@ -8,7 +8,7 @@ import textwrap
 import matplotlib.pyplot as plt
 
 from .panels import few_ticks, note
-from .points import OF_CONTACTS, short_words, sweep_text, swept
+from .points import OF_CONTACTS, depth, ends, label, normal, short_words, sweep_text, swept
 
 MAX_SCENES = 4
 MAX_NAMES = 5  # per panel
@@ -18,9 +18,15 @@ PALE, FRONT = "0.7", "#0b5394"
 # `step`: factor between two named points, at least. `gain`: what a smaller value means.
 Error = collections.namedtuple("Error", "value without title gain step")
 ERRORS = (
-    Error(lambda p: p.ratio, OF_CONTACTS, "candidates per meeting pair", "fewer candidates", 1.01),
-    Error(lambda p: p.depth, (), "depth error, 99th percentile, / L", "less error", 2),
-    Error(lambda p: p.normal, (), "normal error, 99th percentile, degrees", "less error", 2),
+    Error(
+        lambda p: p.truth["candidate_ratio"],
+        OF_CONTACTS,
+        "candidates per meeting pair",
+        "fewer candidates",
+        1.01,
+    ),
+    Error(depth, (), "depth error, 99th percentile, / L", "less error", 2),
+    Error(normal, (), "normal error, 99th percentile, degrees", "less error", 2),
 )
 
 
@@ -28,7 +34,7 @@ def frontier(points, value, step):
     """The Pareto-optimal points in time and value, by time. Each value is smaller than the one before by a
     factor of at least `step`."""
     best, line = float("inf"), []
-    for p in sorted(points, key=lambda p: (p.ms, value(p))):
+    for p in sorted(points, key=lambda p: (p.ms(), value(p))):
         if value(p) * step <= best:
             best = value(p)
             line.append(p)
@@ -48,10 +54,11 @@ def _most_distinct(line, value):
 def _alike(point, points, value):
     """Number of other points with overlapping intervals of time and a value that differs by less than a
     thousandth."""
+    low, high = ends(point)
     return sum(
         q is not point
-        and q.low <= point.high
-        and q.high >= point.low
+        and ends(q)[0] <= high
+        and ends(q)[1] >= low
         and abs(value(q) / value(point) - 1) < 1e-3
         for q in points
     )
@@ -64,7 +71,7 @@ def _message(line, names, value, gain):
     less = value(first) / value(last)
     return (
         f"{names[first]}: the fastest; {names[last]}: {f'{less:.2f}' if less < 10 else f'{less:.0e}'} times {gain} for "
-        f"{last.ms / first.ms:.2f} times the time"
+        f"{last.ms() / first.ms():.2f} times the time"
     )
 
 
@@ -75,10 +82,10 @@ def _draw_all(axes, points, value):
         ([p for p in points if p.missed > 0], True),
     ):
         axes.hlines(
-            [value(p) for p in group], [p.low for p in group], [p.high for p in group], color=PALE, lw=0.8
+            [value(p) for p in group], *([ends(p)[i] for p in group] for i in (0, 1)), color=PALE, lw=0.8
         )
         axes.plot(
-            [p.ms for p in group],
+            [p.ms() for p in group],
             [value(p) for p in group],
             "o",
             ms=3.5,
@@ -91,18 +98,23 @@ def _draw_all(axes, points, value):
 
 def _draw_front(axes, points, value, line, names):
     """Draws the frontier with its line and names."""
-    middle = math.sqrt(min(q.ms for q in points) * max(q.ms for q in points))
+    middle = math.sqrt(min(q.ms() for q in points) * max(q.ms() for q in points))
     axes.plot(
-        [p.ms for p in line], [value(p) for p in line], color=FRONT, lw=0.7, drawstyle="steps-post", zorder=0
+        [p.ms() for p in line],
+        [value(p) for p in line],
+        color=FRONT,
+        lw=0.7,
+        drawstyle="steps-post",
+        zorder=0,
     )
     for p in line:
         more = _alike(p, [q for q in points if q.missed == 0], value)
-        axes.hlines(value(p), p.low, p.high, color=FRONT, lw=1.6)
-        axes.plot(p.ms, value(p), "o", ms=5, color=FRONT)
-        late = p.ms > middle
+        axes.hlines(value(p), *ends(p), color=FRONT, lw=1.6)
+        axes.plot(p.ms(), value(p), "o", ms=5, color=FRONT)
+        late = p.ms() > middle
         axes.annotate(
             names[p] + (f" (and {more} alike)" if more else ""),
-            (p.ms, value(p)),
+            (p.ms(), value(p)),
             xytext=(-3 if late else 3, 5),
             textcoords="offset points",
             ha="right" if late else "left",
@@ -117,7 +129,7 @@ def _scatter(axes, points, error):
     value = error.value
     axes.set(xlabel="ms a frame", ylabel=error.title)
     known = [p for p in points if value(p) is not None]
-    points = [p for p in known if value(p) > 0 and p.ms > 0]
+    points = [p for p in known if value(p) > 0 and p.ms() > 0]
     if not points:
         note(
             axes,
@@ -130,7 +142,7 @@ def _scatter(axes, points, error):
     line = _most_distinct(frontier([p for p in points if p.missed == 0], value, error.step), value)
     if line:
         distinguishing = swept(line, error.without) or swept(points, error.without)
-        names = {p: short_words(p, distinguishing) or p.label for p in line}
+        names = {p: short_words(p, distinguishing) or label(p) for p in line}
         _draw_front(axes, points, value, line, names)
         axes.set_title(
             "\n".join(textwrap.wrap(_message(line, names, value, error.gain), 80)), fontsize=8, loc="left"

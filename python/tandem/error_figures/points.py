@@ -1,90 +1,89 @@
 # SPDX-License-Identifier: MIT
-"""Finished cells with errors against the truth, as data of the figures, and the settings in which they
-differ."""
+"""Finished cells with errors against the truth, and what the figures show of them."""
 
 import re
 
-from .. import cell_rows, kinds, lines
+from .. import kinds, lines
+from ..cell import Cell
 from ..varying import varying
 
 SIZES = {"float": 2.0**-24, "double": 2.0**-53}
 OF_CONTACTS = ("decision", "contact_rule")
 
 
-class Point:
-    """A finished cell: those values of its record that the figures use."""
+def kind(cell):
+    """The kind of a cell's scene."""
+    if cell.scene.startswith("hard"):
+        return "constructed"
+    return "random" if cell.scene_name == "pile" else "resting"
 
-    _unique_settings = {}
 
-    def __init__(self, record):
-        settings = {**record["settings"], **record.get("asked", {})}
-        # Equal settings are stored once, because they need most of the memory for long files.
-        self.settings = self._unique_settings.setdefault(tuple(sorted(settings.items())), settings)
-        self.scene = record["scene"]["key"]
-        self.kind = (
-            "constructed"
-            if self.scene.startswith("hard")
-            else "random"
-            if record["scene"]["name"] == "pile"
-            else "resting"
-        )
-        self.device = "+".join(
-            f"{device['name']} {device['id'].split(':')[0]}" for device in record["devices"]
-        )
-        self.label = f"{record['algorithm']} {record['preset']}"
-        frames, total = cell_rows.frames_of(record), record["total_ns"]
-        self.ms = total["median"] / 1e6 / frames
-        self.low, self.high = (total.get(name, total["median"]) / 1e6 / frames for name in ("low", "high"))
-        self._read_errors(record["error"]["truth"])
-        found = re.match(r"hard:([^:,]+)", self.scene)
-        self.family = found.group(1) if found else None
-        found = re.search(r"difficulty=([^,]+)", self.scene)
-        self.difficulty = float(found.group(1)) if found else None
+def device(cell):
+    return "+".join(f"{device['name']} {device['id'].split(':')[0]}" for device in cell.record["devices"])
 
-    def _read_errors(self, truth):
-        self.missed = truth["missed_touching"] + truth["missed_overlapping"]
-        self.meeting = truth["touching"] + truth["overlapping"] + self.missed
-        self.candidates, self.false = truth["candidates"], truth["false"]
-        self.ratio = truth["candidate_ratio"]
-        contacts = truth["contacts"] or {}
-        self.depth, self.normal, self.volume = (
-            (contacts.get(name) or {}).get("p99")
-            for name in ("depth_ulps", "normal_degrees", "volume_relative")
-        )
-        if self.depth is not None:
-            self.depth *= SIZES[self.settings["precision"]]
 
-    def row(self):
-        """The row of this point in the data of a figure."""
-        return {
-            "scene": self.scene,
-            "kind": self.kind,
-            "device": self.device,
-            "cell": self.label,
-            **self.settings,
-            "ms": self.ms,
-            "meeting": self.meeting,
-            "missed": self.missed,
-            "candidates": self.candidates,
-            "false": self.false,
-            "ratio": self.ratio,
-            "depth_p99_of_L": self.depth,
-            "normal_p99_degrees": self.normal,
-            "volume_p99_relative": self.volume,
-        }
+def label(cell):
+    return f"{cell.algorithm} {cell.preset}"
+
+
+def ends(cell):
+    """The ends of the interval of the time; the time itself for records without one."""
+    return [cell.ms() if cell.ms(end) is None else cell.ms(end) for end in ("low", "high")]
+
+
+def family(cell):
+    """The family of a hard scene, or None."""
+    found = re.match(r"hard:([^:,]+)", cell.scene)
+    return found and found.group(1)
+
+
+def difficulty(cell):
+    found = re.search(r"difficulty=([^,]+)", cell.scene)
+    return float(found.group(1)) if found else None
+
+
+def depth(cell):
+    """The error of depths, over the size of the scene."""
+    ulps = cell.error_of_contacts("depth_ulps", "p99")
+    return None if ulps is None else ulps * SIZES[cell.asked["precision"]]
+
+
+def normal(cell):
+    return cell.error_of_contacts("normal_degrees", "p99")
+
+
+def row(cell):
+    """The row of a cell in the data of a figure."""
+    return {
+        "scene": cell.scene,
+        "kind": kind(cell),
+        "device": device(cell),
+        "cell": label(cell),
+        **cell.asked,
+        "ms": cell.ms(),
+        "meeting": cell.meeting,
+        "missed": cell.missed,
+        "candidates": cell.truth["candidates"],
+        "false": cell.truth["false"],
+        "ratio": cell.truth["candidate_ratio"],
+        "depth_p99_of_L": depth(cell),
+        "normal_p99_degrees": normal(cell),
+        "volume_p99_relative": cell.error_of_contacts("volume_relative", "p99"),
+    }
 
 
 def read(files, torn):
-    """Reads Points, and counts cells with a truth that are left out. Raises RecordError, also if there is no
-    point."""
+    """Reads Cells, and counts cells with a truth that are left out. Raises RecordError, also if there is none
+    to draw."""
     points, left_out = [], 0
     for file in files:
-        for location, kind, record in kinds.each(file, torn):
-            with kinds.fields_of(kind, location):
-                if kind != "cell" or not (record["error"] or {}).get("truth"):
+        for location, kind_of_record, record in kinds.each(file, torn):
+            with kinds.fields_of(kind_of_record, location):
+                if kind_of_record != "cell" or not (record["error"] or {}).get("truth"):
                     continue
                 if record["status"] == "ok" and "median" in (record["total_ns"] or {}):
-                    points.append(Point(record))
+                    points.append(Cell(record, *location.rsplit(":", 1)))
+                    row(points[-1])  # raises an error for a record that lacks fields
                 else:
                     left_out += 1
     if not points:
@@ -94,11 +93,11 @@ def read(files, torn):
 
 def swept(points, without=()):
     """{name: values} of cells, devices, and settings of one algorithm and preset that have several values."""
-    distinct = {(id(p.settings), p.label, p.device): p for p in points}.values()
+    distinct = {(tuple(p.asked.items()), label(p), device(p)): p for p in points}.values()
     families = (
         pair
         for p in distinct
-        for pair in ((None, (("cell", p.label), ("device", p.device))), (p.label, p.settings.items()))
+        for pair in ((None, (("cell", label(p)), ("device", device(p)))), (label(p), p.asked.items()))
     )
     found = {}
     for (_, name), own in varying(families).items():
@@ -109,11 +108,11 @@ def swept(points, without=()):
 
 def words(point, names):
     """Values of the given names of a point, as text."""
-    own = {"cell": point.label, "device": point.device}
+    own = {"cell": label(point), "device": device(point)}
     return " ".join(
-        own[name] if name in own else f"{name}={point.settings[name]}"
+        own[name] if name in own else f"{name}={point.asked[name]}"
         for name in names
-        if name in own or name in point.settings
+        if name in own or name in point.asked
     )
 
 

@@ -6,24 +6,24 @@ import math
 import statistics
 
 from .. import resampling
-from .quantities import NotMeasured, batches_of, disturbed_rounds, frame_range, seconds_by_round, weights_of
+from .quantities import NotMeasured, batches_of, frame_range, seconds_by_round, weights_of
 from .ratios import common_frames, frames_text
 from .rules import Measured
 from .simulation import check_contacts, frames_of
 
 
-def _uploads_of(cell):
-    """(seconds of the upload of one batch in each undisturbed round, number of disturbed rounds) of a cell
+def _uploads_of(case):
+    """(seconds of the upload of one batch in each undisturbed round, number of disturbed rounds) of a case
     with the whole queue array."""
-    if not cell.batches:
+    if not case.batches:
         raise NotMeasured("the cell with the whole queue array has no number of batches")
-    found = [seconds_by_round(record, "stages:write", frame_range(record)) for record in cell.records]
+    found = [seconds_by_round(cell, "stages:write", frame_range(cell)) for cell in case.cells]
     clean = [
-        {number: value for number, value in own.items() if number not in disturbed_rounds(record)}
-        for own, record in zip(found, cell.records)
+        {number: value for number, value in own.items() if number not in cell.disturbed}
+        for own, cell in zip(found, case.cells)
     ]
     common = sorted(set.intersection(*map(set, clean)))
-    return [sum(own[number] for own in clean) / cell.batches for number in common], sum(
+    return [sum(own[number] for own in clean) / case.batches for number in common], sum(
         map(len, found)
     ) - sum(map(len, clean))
 
@@ -34,20 +34,20 @@ def uploads_of(arrays):
     return [seconds for uploads, _ in found for seconds in uploads], sum(left_out for _, left_out in found)
 
 
-def _middle_sum(records, name):
-    """Sum over (record, frames) of the median of a time over all rounds."""
+def _middle_sum(cells, name):
+    """Sum over (cell, frames) of the median of a time over all rounds."""
     return sum(
-        statistics.median(list(seconds_by_round(record, name, frames).values()) or [0.0])
-        for record, frames in records
+        statistics.median(list(seconds_by_round(cell, name, frames).values()) or [0.0])
+        for cell, frames in cells
     )
 
 
-def _all_frames(cell):
-    return [(record, frame_range(record)) for record in cell.records]
+def _all_frames(case):
+    return [(cell, frame_range(cell)) for cell in case.cells]
 
 
-def _batches(records):
-    found = [batches_of(record, frames) for record, frames in records]
+def _batches(cells):
+    found = [batches_of(cell, frames) for cell, frames in cells]
     if not all(found):
         raise NotMeasured("the number of batches was not recorded")
     return sum(found)
@@ -102,12 +102,8 @@ def ratio_with_array(other, other_name, own, own_name, arrays, rest=None):
 def share_with_array(other, above_name, below_name, arrays):
     """A time of a cell over another time of it, both with an upload of the whole array for each batch."""
     uploads, left_out = uploads_of(arrays)
-    records = _all_frames(other)
-    above, below, batches = (
-        _middle_sum(records, above_name),
-        _middle_sum(records, below_name),
-        _batches(records),
-    )
+    cells = _all_frames(other)
+    above, below, batches = (_middle_sum(cells, above_name), _middle_sum(cells, below_name), _batches(cells))
     values = [(above + batches * upload) / (below + batches * upload) for upload in uploads]
     return _with_interval(
         values,
@@ -133,7 +129,7 @@ def step_share(cell, above_name, run, parts_above, parts_below):
         for seconds, names in ((whole, parts_below), (above, parts_above))
     ]
     found = resampling.ratio_of_sums(*sides)
-    disturbed = sum(len(disturbed_rounds(record)) for record in cell.records)
+    disturbed = sum(len(own.disturbed) for own in cell.cells)
     return Measured(
         *found,
         0 if disturbed else len(common),

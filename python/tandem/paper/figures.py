@@ -3,6 +3,7 @@
 
 import numpy
 
+from ..fields import at
 from .drawing import (
     COLOUR_OF,
     COLOURS,
@@ -169,13 +170,7 @@ def figure8(folder):
     legend_above(times, 6)
     log_axis(times.yaxis)
     counts = sorted(
-        (
-            r["frames"]["first"],
-            r["frames"]["last"],
-            sum(s["launches"] for s in r["stages"].values())
-            / (r["frames"]["last"] - r["frames"]["first"] + 1),
-        )
-        for r in case.records
+        (cell.first_frame, cell.last_frame, cell.of_stages("launches") / cell.frames) for cell in case.cells
     )
     launches.plot(
         [(first + last) / 2 for first, last, _ in counts],
@@ -330,9 +325,9 @@ def figure13(folder):
                 "low_ms": 1e3 * case.total("low") / case.frames,
                 "high_ms": 1e3 * case.total("high") / case.frames,
                 "seeds": sum(
-                    r["work"]["counters"].get("seeds", 0)
-                    for r in case.records
-                    if (r["work"] or {}).get("counters")
+                    cell.record["work"]["counters"].get("seeds", 0)
+                    for cell in case.cells
+                    if at(cell.record, "work", "counters")
                 )
                 / case.frames,
                 "samples": case.rounds,

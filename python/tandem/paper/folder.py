@@ -3,10 +3,12 @@
 
 import csv
 import json
+import os
 import pathlib
 
 from .. import lines
-from .quantities import NotMeasured, batches_of, disturbed_rounds, frame_range, release_launches, rounds_of
+from ..cell import Cell, each
+from .quantities import NotMeasured, batches_of, frame_range
 from .simulation import Simulation, composed
 
 SCENES = ("funnel", "glasses", "colosseum", "plates", "tower")
@@ -34,84 +36,77 @@ def number(text):
     return float(text) if text else None
 
 
-class MeasuredCells:
-    """The cells of one scene, algorithm, preset and settings, over one or several ranges of frames, with sums
+class Case:
+    """The Cells of one scene, algorithm, preset and settings, over one or several ranges of frames, with sums
     over their frames. Times are seconds: medians of the replays, on the device, or on the host for stages
     without device time."""
 
-    def __init__(self, records, locations):
-        self.records, self.locations = records, locations
-        first = records[0]
-        self.scene, self.algorithm, self.preset, self.settings = (
-            first["scene"]["name"],
-            first["algorithm"],
-            first["preset"],
-            first["settings"],
-        )
-        self.device = first["devices"][0]
-        self.frames = sum(r["frames"]["last"] - r["frames"]["first"] + 1 for r in records)
+    def __init__(self, cells, folder):
+        self.cells, first = cells, cells[0]
+        self.locations = [f"{os.path.relpath(cell.path, folder)}:{cell.line}" for cell in cells]
+        self.scene, self.algorithm, self.preset = first.scene_name, first.algorithm, first.preset
+        self.settings, self.device = first.settings, first.record["devices"][0]
+        self.frames = sum(cell.frames for cell in cells)
         self.first, self.last = (
-            min(r["frames"]["first"] for r in records),
-            max(r["frames"]["last"] for r in records),
+            min(cell.first_frame for cell in cells),
+            max(cell.last_frame for cell in cells),
         )
-        self.status = next((r["status"] for r in records if r["status"] != "ok"), "ok")
         self.scale = STEPS_OF_TABLES / self.frames
 
     def total(self, which="median"):
-        return sum(r["total_ns"][which] for r in self.records) / 1e9
+        return sum(cell.record["total_ns"][which] for cell in self.cells) / 1e9
 
     def breakdown(self):
         """Seconds of whole frames in the replays that time every command, of which the stages are parts."""
-        return sum(r["breakdown_ns"]["median"] for r in self.records) / 1e9
+        return sum(cell.record["breakdown_ns"]["median"] for cell in self.cells) / 1e9
 
     @property
     def rounds(self):
         """Number of rounds of each frame, the least of all."""
-        return min(len(rounds_of(r)) for r in self.records)
+        return min(len(cell.rounds) for cell in self.cells)
+
+    def _stages(self, name):
+        return [cell.record["stages"][name] for cell in self.cells if name in cell.record["stages"]]
 
     def stage(self, name, where=None):
-        """Sum of a stage. where: device_ns, host_ns, launches, waits or bytes; default: the device's time, or
-        else the host's."""
+        """Seconds of a stage. where: device_ns or host_ns; default: the device's time, or else the host's."""
 
         def of(stage):
-            if where in ("launches", "waits", "bytes"):
-                return stage[where]
             device, host = stage["device_ns"]["median"], stage["host_ns"]["median"]
             return (device or host if where is None else stage[where]["median"]) / 1e9
 
-        return sum(of(r["stages"][name]) for r in self.records if name in r["stages"])
+        return sum(map(of, self._stages(name)))
 
     def sum(self, where):
-        return sum(stage[where] for r in self.records for stage in r["stages"].values())
+        """Launches, waits or bytes of all stages."""
+        return sum(cell.of_stages(where) for cell in self.cells)
 
     def host_work(self, name):
         """Seconds of host work with that name; None for old records without names of host work."""
-        if not all("host_work" in r for r in self.records):
+        works = [cell.record.get("host_work") for cell in self.cells]
+        if None in works:
             return None
-        return (
-            sum(r["host_work"][name]["host_ns"]["median"] for r in self.records if name in r["host_work"])
-            / 1e9
-        )
+        return sum(work[name]["host_ns"]["median"] for work in works if name in work) / 1e9
 
     @property
     def release_launches(self):
         """Launches counted as in the paper's release; None if the records have no times of kernels."""
-        counts = [count for count in map(release_launches, self.records) if count is not None]
+        counts = [cell.release_launches for cell in self.cells if cell.release_launches is not None]
         return sum(counts) if counts else None
 
     @property
     def batches(self):
         """Number of batches of gProximity in all frames; None if a batch has all body pairs or their number
         is unknown."""
-        found = [batches_of(r, frame_range(r)) for r in self.records]
+        found = [batches_of(cell, frame_range(cell)) for cell in self.cells]
         return sum(found) if all(found) else None
 
     def per_frame(self, name, where="device_ns"):
         """Pairs (frame, seconds) of all frames."""
         rows = []
-        for r in self.records:
-            column = r["stages"].get(name, {}).get(where, {})
-            rows += [(r["frames"]["first"] + i, ns / 1e9) for i, ns in enumerate(column.get("frames", []))]
+        for cell in self.cells:
+            column = cell.record["stages"].get(name, {}).get(where, {})
+            rows += [(cell.first_frame + i, ns / 1e9) for i, ns in enumerate(column.get("frames", []))]
         return sorted(rows)
 
 
@@ -143,7 +138,7 @@ class Folder:
         return [name for name, step in self.steps.items() if name.startswith(beginning) and step["exit"] == 0]
 
     def cases(self, step):
-        """MeasuredCells from the last record of each cell of a step, also of a step that did not complete.
+        """Cases from the last record of each cell of a step, also of a step that did not complete.
         Cells of one scene, algorithm, preset and settings with different frames form one entry."""
         if step not in self._cases:
             self._cases[step] = self._read_cases(step)
@@ -153,26 +148,16 @@ class Folder:
         path = self.path / "records" / f"{step}.jsonl"
         if not path.exists() or path.stat().st_size == 0:
             return []
-        cells = {}
-        for record, location in lines.each(path):
-            cells[record["key"]] = (record, f"records/{path.name}:{location.rpartition(':')[2]}")
-        groups = {}
-        for record, location in cells.values():
-            settings = {**record["settings"], **record.get("asked", {})}
-            key = (
-                record["scene"]["key"],
-                record["algorithm"],
-                record["preset"],
-                record["devices"][0]["id"],
-                tuple(sorted(settings.items())),
-            )
-            groups.setdefault(key, []).append((record, location))
-        cases = [
-            MeasuredCells([r for r, _ in group], [p for _, p in group])
+        cells, groups = {cell.key: cell for cell in each(path)}, {}
+        for cell in cells.values():
+            settings = tuple(sorted(cell.asked.items()))
+            key = (cell.scene, cell.algorithm, cell.preset, cell.record["devices"][0]["id"], settings)
+            groups.setdefault(key, []).append(cell)
+        return [
+            Case(group, self.path)
             for group in groups.values()
-            if all(r["status"] == "failed" or r["total_ns"] for r, _ in group)
+            if all(cell.status == "ok" and cell.record["total_ns"] for cell in group)
         ]
-        return [case for case in cases if case.status == "ok"]
 
     def wrong(self):
         """Pairs (location, message) of all records that failed or are wrong."""
@@ -192,14 +177,14 @@ class Folder:
         """(step, number of disturbed rounds, number of rounds) of the steps with disturbed rounds."""
         found = []
         for path in sorted((self.path / "records").glob("*.jsonl")):
-            records = [
-                line
+            cells = [
+                Cell(line)
                 for line in self._json_lines(f"records/{path.name}")
                 if line.get("conditions") and line.get("total_ns")
             ]
-            count = sum(len(disturbed_rounds(record)) for record in records)
+            count = sum(cell.disturbed_rounds for cell in cells)
             if count:
-                found.append((path.stem, count, sum(len(rounds_of(record)) for record in records)))
+                found.append((path.stem, count, sum(cell.all_rounds for cell in cells)))
         return found
 
     def composition(self, run, step):

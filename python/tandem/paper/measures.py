@@ -9,6 +9,7 @@ import numpy
 import scipy.stats
 
 from .. import resampling
+from ..fields import at
 from . import composed
 from .folder import SCENES
 from .methods import found, names
@@ -124,7 +125,7 @@ def backends(claim, folder, scene, k):
 def count(claim, folder, scene, k):
     side = claim.fields["above"]
     [cell] = claim.cells(folder, (side,), scene, k)
-    counts = [count_of(record, side["quantity"], frame_range(record)) for record in cell.records]
+    counts = [count_of(own, side["quantity"], frame_range(own)) for own in cell.cells]
     is_scene = side["quantity"] in ("bodies", "tetrahedra")
     return exact(
         counts[0] if is_scene else sum(counts),
@@ -186,17 +187,17 @@ def digests(claim, folder, scene, k):
     equal digests."""
     groups = {}
     for step in [f"{kind}-{name}" for name in SCENES for kind in ("cells", "resident")]:
-        for record in [record for case in folder.cases(step) for record in case.records]:
-            digest = (record.get("agreement") or {}).get("digest")
+        for cell in [cell for case in folder.cases(step) for cell in case.cells]:
+            digest = at(cell.record, "agreement", "digest")
             if digest and digest["count"]:
-                own = record["settings"]
+                own = cell.settings
                 # Boxes of spheres may leave out pairs of bodies that other broad phases keep.
                 bounds = [
                     *(str(own.get(name)) for name in ("k", "axes", "precision", "rounding", "placement")),
                     own.get("broad") == "sphere_boxes",
                 ]
-                group = groups.setdefault((record["scene"]["digest"], frame_range(record), *bounds), {})
-                group.setdefault(record["algorithm"], set()).add(json.dumps(digest))
+                group = groups.setdefault((cell.scene_digest, frame_range(cell), *bounds), {})
+                group.setdefault(cell.algorithm, set()).add(json.dumps(digest))
     compared = [group for group in groups.values() if len(group) > 1]
     if not compared:
         raise NotMeasured("no two algorithms have digests of the same frames and bounds, with pairs")

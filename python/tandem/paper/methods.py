@@ -27,7 +27,7 @@ def name_of(case):
 
 def _origin(case):
     """The key of a case's scene, or of the scene that its recording comes from."""
-    return case.records[0]["scene"]["key"].rpartition(",of=")[2]
+    return case.cells[0].scene.rpartition(",of=")[2]
 
 
 def found(folder, step, scene, wanted):
@@ -36,8 +36,7 @@ def found(folder, step, scene, wanted):
     pattern = names()["scenes"][scene]
     for case in folder.cases(step):
         own = {
-            **case.settings,
-            **case.records[0].get("asked", {}),
+            **case.cells[0].asked,
             "algorithm": case.algorithm,
             "preset": case.preset,
             "backend": case.device["id"].partition(":")[0],

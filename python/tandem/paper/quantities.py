@@ -12,7 +12,7 @@ launch:A+B" (launches of all stages), "counter:NAME", "contacts", "pairs", "body
 
 import statistics
 
-from ..tables.cells import RELEASE_KERNELS
+from ..fields import at
 
 TIMES = ("frame", "breakdown", "narrow", "stages", "largest", "host work")
 LISTS = {
@@ -31,8 +31,8 @@ def is_time(name):
     return name.partition(":")[0] in TIMES
 
 
-def frame_range(record):
-    return record["frames"]["first"], record["frames"]["last"]
+def frame_range(cell):
+    return cell.first_frame, cell.last_frame
 
 
 def weights_of(frames):
@@ -43,62 +43,43 @@ def weights_of(frames):
     return [width * len(frames) / sum(widths[: len(frames)]) for width in widths[: len(frames)]]
 
 
-def disturbed_rounds(record):
-    """Numbers of the rounds whose samples are doubtful."""
-    return {one["round"] for one in ((record.get("conditions") or {}).get("disturbed") or [])}
-
-
-def rounds_of(record):
-    """Numbers of all rounds with samples, in ascending order."""
-    return sorted(set(record["total_ns"]["rounds"]))
-
-
-def _places(record, frames):
+def _places(cell, frames):
     """Indices of frames FIRST to LAST in per-frame lists of a record; None for all of its frames."""
-    first, last = frame_range(record)
+    first, last = frame_range(cell)
     return None if (first, last) == frames else range(frames[0] - first, frames[1] - first + 1)
 
 
-def _whole_frames(record, frames):
-    total, places = record["total_ns"], _places(record, frames)
-    samples = (
-        total["samples"] if places is None else [sum(sample[i] for i in places) for sample in total["frames"]]
-    )
-    by_round = {}
-    for number, ns in zip(total["rounds"], samples):
-        by_round.setdefault(number, []).append(ns)
+def _whole_frames(cell, frames):
+    places = _places(cell, frames)
+    if places is None:
+        return {number: ns / 1e9 for number, ns in cell.rounds.items()}
+    total, by_round = cell.record["total_ns"], {}
+    for number, sample in zip(total["rounds"], total["frames"]):
+        by_round.setdefault(number, []).append(sum(sample[i] for i in places))
     return {number: statistics.median(own) / 1e9 for number, own in by_round.items()}
 
 
-def _stage(record, name, frames):
-    """Seconds of a stage for each round: replays that time every command are one for each round, in their
-    order."""
-    stage = record["stages"].get(name)
+def _each_round(cell, times, frames):
+    """Seconds for each round: replays that time every command are one for each round, in their order."""
+    places = _places(cell, frames)
+    samples = times["samples"] if places is None else [sum(times["frames"][i] for i in places)]
+    return {number: ns / 1e9 for number, ns in zip(cell.rounds, samples)}
+
+
+def _stage(cell, name, frames):
+    stage = cell.record["stages"].get(name)
     if stage is None:
         return {}
-    times = stage["device_ns"] if stage["device_ns"]["median"] else stage["host_ns"]
-    places = _places(record, frames)
-    samples = times["samples"] if places is None else [sum(times["frames"][i] for i in places)]
-    return {number: ns / 1e9 for number, ns in zip(rounds_of(record), samples)}
+    return _each_round(cell, stage["device_ns"] if stage["device_ns"]["median"] else stage["host_ns"], frames)
 
 
-def _breakdown(record, frames):
-    times, places = record["breakdown_ns"], _places(record, frames)
-    samples = times["samples"] if places is None else [sum(times["frames"][i] for i in places)]
-    return {number: ns / 1e9 for number, ns in zip(rounds_of(record), samples)}
-
-
-def _host_work(record, name, frames):
-    if "host_work" not in record:
+def _host_work(cell, name, frames):
+    if "host_work" not in cell.record:
         raise NotMeasured("records of an older program, without the names of host work")
-    if _places(record, frames) is not None:
+    if _places(cell, frames) is not None:
         raise NotMeasured("host work is not recorded for each frame")
-    work = record["host_work"].get(name)
-    return (
-        {}
-        if work is None
-        else {number: ns / 1e9 for number, ns in zip(rounds_of(record), work["host_ns"]["samples"])}
-    )
+    work = cell.record["host_work"].get(name)
+    return {} if work is None else _each_round(cell, work["host_ns"], frames)
 
 
 def _combined(parts, combine):
@@ -110,86 +91,74 @@ def _combined(parts, combine):
     return {number: combine([part[number] for part in known]) for number in sorted(common)}
 
 
-def seconds_by_round(record, name, frames):
+def seconds_by_round(cell, name, frames):
     """A time by the number of its round, disturbed rounds included; empty if the record has no such stage."""
     kind, _, rest = name.partition(":")
     names = rest.split("+")
     if kind == "frame":
-        return _whole_frames(record, frames)
+        return _whole_frames(cell, frames)
     if kind == "breakdown":
-        return _breakdown(record, frames)
+        return _each_round(cell, cell.record["breakdown_ns"], frames)
     if kind == "narrow":
-        whole = _whole_frames(record, frames)
-        other = _combined([_stage(record, stage, frames) for stage in BEFORE_NARROW], sum)
+        whole = _whole_frames(cell, frames)
+        other = _combined([_stage(cell, stage, frames) for stage in BEFORE_NARROW], sum)
         return {number: max(seconds - other.get(number, 0), 0) for number, seconds in whole.items()}
     if kind == "host work":
-        return _combined([_host_work(record, work, frames) for work in names], sum)
-    return _combined([_stage(record, stage, frames) for stage in names], max if kind == "largest" else sum)
+        return _combined([_host_work(cell, work, frames) for work in names], sum)
+    return _combined([_stage(cell, stage, frames) for stage in names], max if kind == "largest" else sum)
 
 
-def _in_frames(values, record, frames):
+def _in_frames(values, cell, frames):
     if values is None:
         raise NotMeasured("counts of work were not recorded")
-    places = _places(record, frames)
+    places = _places(cell, frames)
     return sum(values if places is None else (values[i] for i in places))
 
 
-def _whole_only(record, frames):
-    if _places(record, frames) is not None:
+def _whole_only(cell, frames):
+    if _places(cell, frames) is not None:
         raise NotMeasured("launches and bytes are not recorded for each frame")
 
 
-def release_launches(record):
-    """Launches as the paper's release counts them; None if the record has no times of kernels."""
-    times = record.get("kernel_times")
-    if not times or record["algorithm"] not in ("chunked", "gproximity"):
-        return None
-    return sum(times[name]["launches"] for name in RELEASE_KERNELS if name in times)
+def _of_stages(cell, stages, what):
+    return sum(stage[what] for name, stage in cell.record["stages"].items() if not stages or name in stages)
 
 
-def _of_stages(record, stages, what):
-    return sum(stage[what] for name, stage in record["stages"].items() if not stages or name in stages)
-
-
-def count_of(record, name, frames):
+def count_of(cell, name, frames):
     """A count of a record in these frames. Raises NotMeasured."""
     kind, _, rest = name.partition(":")
     if kind in ("bodies", "tetrahedra"):
-        return record["scene"][kind]
+        return getattr(cell, kind)
     if kind in LISTS:
-        return _in_frames((record["work"] or {}).get(LISTS[kind]), record, frames)
+        return _in_frames(cell.work(LISTS[kind]), cell, frames)
     if kind == "bytes for each launch":
-        return _of_stages(record, rest.split("+"), "bytes") / _of_stages(record, (), "launches")
-    _whole_only(record, frames)
+        return _of_stages(cell, rest.split("+"), "bytes") / _of_stages(cell, (), "launches")
+    _whole_only(cell, frames)
     if kind in ("launches", "bytes"):
-        return _of_stages(record, rest.split("+") if rest else (), kind)
-    found = (
-        release_launches(record)
-        if kind == "release launches"
-        else ((record["work"] or {}).get("counters") or {}).get(rest)
-    )
+        return _of_stages(cell, rest.split("+") if rest else (), kind)
+    found = cell.release_launches if kind == "release launches" else at(cell.record, "work", "counters", rest)
     if found is None:
         raise NotMeasured("the records have no such count")
     return found
 
 
-def batch_size(record):
+def batch_size(cell):
     """Body pairs of a batch of gProximity; 0 if a batch has all. With sizes=release a batch has a body pair
     for each group, of which the release launches as many as 2048 work-items for each compute unit make (its
     rule for the global size)."""
-    settings = record["settings"]
+    settings = cell.settings
     size = int(settings.get("batch") or 0)
     if size == 0 and settings.get("sizes") == "release":
         local = int(settings["group_size"])
-        size = max(2048 * record["devices"][0]["compute_units"], local) // local
+        size = max(2048 * cell.record["devices"][0]["compute_units"], local) // local
     return size
 
 
-def batches_of(record, frames):
+def batches_of(cell, frames):
     """Number of batches of gProximity in these frames, which takes a limited number of body pairs at a time;
     None if unknown."""
-    size, pairs = batch_size(record), (record["work"] or {}).get("body_pairs")
+    size, pairs = batch_size(cell), cell.work("body_pairs")
     if not size or not pairs:
         return None
-    places = _places(record, frames)
+    places = _places(cell, frames)
     return sum(-(-count // size) for count in (pairs if places is None else (pairs[i] for i in places)))

@@ -7,29 +7,20 @@ import math
 import statistics
 
 from .. import resampling
-from .quantities import (
-    NotMeasured,
-    count_of,
-    disturbed_rounds,
-    frame_range,
-    is_time,
-    rounds_of,
-    seconds_by_round,
-    weights_of,
-)
+from .quantities import NotMeasured, count_of, frame_range, is_time, seconds_by_round, weights_of
 from .rules import Measured, exact
 
 LEAST_FRAMES = 5  # frames that are measured once each and still give an interval
 
 
 def common_frames(above, below):
-    """[(record, record, (first, last))] of the frames that both cells have, of one recording if they are of
+    """[(cell, cell, (first, last))] of the frames that both cells have, of one recording if they are of
     one scene. Raises NotMeasured."""
     pairs, alike = [], above.scene == below.scene
-    for a in above.records:
-        for b in below.records:
+    for a in above.cells:
+        for b in below.cells:
             first, last = (pick(ends) for pick, ends in zip((max, min), zip(frame_range(a), frame_range(b))))
-            if first <= last and (not alike or a["scene"]["digest"] == b["scene"]["digest"]):
+            if first <= last and (not alike or a.scene_digest == b.scene_digest):
                 pairs.append((a, b, (first, last)))
     if not pairs:
         raise NotMeasured("the cells have no frames of one recording in common")
@@ -44,15 +35,13 @@ def frames_text(pairs):
 
 
 class Sampled:
-    """A time of one side, for each pair of records: its value in every undisturbed round."""
+    """A time of one side, for each pair of cells: its value in every undisturbed round."""
 
-    def __init__(self, records, name):
+    def __init__(self, cells, name):
         self.rounds, self.left_out = [], 0
-        for record, frames in records:
-            found = seconds_by_round(record, name, frames) or dict.fromkeys(rounds_of(record), 0.0)
-            clean = {
-                number: value for number, value in found.items() if number not in disturbed_rounds(record)
-            }
+        for cell, frames in cells:
+            found = seconds_by_round(cell, name, frames) or dict.fromkeys(cell.rounds, 0.0)
+            clean = {number: value for number, value in found.items() if number not in cell.disturbed}
             self.left_out += len(found) - len(clean)
             self.rounds.append(clean)
 
@@ -60,14 +49,14 @@ class Sampled:
         return any(any(own.values()) for own in self.rounds)
 
     def common(self):
-        """Numbers of the rounds that all records have."""
+        """Numbers of the rounds that all cells have."""
         return sorted(set.intersection(*map(set, self.rounds)))
 
     def sums(self, numbers):
         return [sum(own[number] for own in self.rounds) for number in numbers]
 
     def by_frame(self):
-        """The median over the rounds of each record."""
+        """The median over the rounds of each cell."""
         return [statistics.median(own.values()) if own else None for own in self.rounds]
 
 
@@ -78,7 +67,7 @@ def _of_times(pairs, above, below, locations):
     if not (top.is_present() and bottom.is_present()) and not left_out:
         raise NotMeasured("a stage of this claim took no time")
     make = lambda found, samples, basis: Measured(*found, samples, left_out, basis, text, locations)
-    side_by_side = all(a.get("session") and a["session"] == b.get("session") for a, b, _ in pairs)
+    side_by_side = all(a.session and a.session == b.session for a, b, _ in pairs)
     common = sorted(set(top.common()) & set(bottom.common()))
     if side_by_side and len(common) > 1:
         found = resampling.paired_ratio(bottom.sums(common), top.sums(common))

@@ -71,10 +71,10 @@ class Simulation:
 def frames_of(cell, name):
     """Seconds of a time by frame: the median of the rounds."""
     found = {}
-    for record in cell.records:
-        first, last = frame_range(record)
+    for own in cell.cells:
+        first, last = frame_range(own)
         for frame in range(first, last + 1):
-            values = seconds_by_round(record, name, (frame, frame)).values()
+            values = seconds_by_round(own, name, (frame, frame)).values()
             found[frame] = statistics.median(values) if values else 0.0
     return found
 
@@ -83,11 +83,10 @@ def check_contacts(cell, steps):
     """Raises NotMeasured unless the steps found the contacts of the cell's frames, but for a hundredth of
     all: with other bounds, other pairs that touch exactly are candidates."""
     pairs = []
-    for record in cell.records:
-        counts = (record["work"] or {}).get("contacts") or []
+    for own in cell.cells:
         pairs += [
             (contacts, steps[frame]["contacts_found"])
-            for frame, contacts in enumerate(counts, frame_range(record)[0])
+            for frame, contacts in enumerate(own.work("contacts") or [], own.first_frame)
             if frame in steps
         ]
     unlike = [abs(contacts - found) for contacts, found in pairs if contacts != found]
@@ -100,13 +99,13 @@ def check_contacts(cell, steps):
 def _stages(cell):
     """{frame: {stage: {"device_ns", "host_ns"}}} of a cell."""
     found = {}
-    for record in cell.records:
-        first, last = frame_range(record)
+    for own in cell.cells:
+        first, last = frame_range(own)
         for frame in range(first, last + 1):
             at = lambda times: (times["frames"] or [0] * (frame + 1 - first))[frame - first]
             found[frame] = {
                 name: {where: at(stage[where]) for where in ("device_ns", "host_ns")}
-                for name, stage in record["stages"].items()
+                for name, stage in own.record["stages"].items()
             }
     return found
 

@@ -149,10 +149,10 @@ def table1(folder):
         for case in folder.cases("cells-plates")
         if (case.algorithm, case.preset) == ("chunked", "published")
     ]:
-        found = [count for record in case.records for count in record["work"]["contacts"]]
+        found = [count for cell in case.cells for count in cell.work("contacts")]
         rows.append(
             _scene_row(
-                case.records[0]["scene"], case.device["id"], len(found), case.locations[0], found=found
+                case.cells[0].record["scene"], case.device["id"], len(found), case.locations[0], found=found
             )
         )
     return Table(

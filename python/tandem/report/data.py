@@ -4,16 +4,18 @@
 import dataclasses
 import json
 
+from .. import lines
 from .groups import groups_of
 from .history import shown_history
 from .leads import title, which_text
 from .numbers import rounded
+from .reading import WHAT_TO_GIVE
+from .rows import COLUMNS, curve, rounds, row
 from .sentences import group_sentences, named_cells, summary_sentences
-from .shown_cells import FIELDS
 from .sweeps import sweeps_of
 
 LABEL_AND_GROUP_BYTES = 80  # estimate per cell
-SHARED = [column for column, is_shared in enumerate(FIELDS.values()) if is_shared]
+SHARED = [column for column, (is_shared, _) in enumerate(COLUMNS.values()) if is_shared]
 
 
 @dataclasses.dataclass
@@ -57,20 +59,33 @@ class _Interned:
         ]
 
 
+def _shown(cell, records):
+    """The row, the curve and the rounds of a cell. Raises RecordError."""
+    try:
+        return row(cell, records.paths.index(cell.path)), curve(cell), rounds(cell)
+    except lines.FIELD_ERRORS:
+        raise lines.RecordError(
+            f"{cell.location}: a record that lacks fields of its schema; {WHAT_TO_GIVE}"
+        ) from None
+
+
 def _fitting_cells(records, max_bytes, values):
-    """Interns the rows of cells and returns those cells that fit. The last cells are left out, with a note,
-    if there are too many."""
-    size = 0
-    for count, cell in enumerate(records.cells):
-        cell.row = values.row(cell.row)
-        size += size_of(dumped(cell.row)) + LABEL_AND_GROUP_BYTES
+    """Rows with interned values, curves and rounds of those cells that fit. The last cells are left out, with a
+    note, if there are too many."""
+    size, shown, cells = 0, [], records.cells
+    for cell in cells:
+        own, *times = _shown(cell, records)
+        shown.append((values.row(own), *times))
+        size += size_of(dumped(shown[-1][0])) + LABEL_AND_GROUP_BYTES
         if size + values.bytes > max_bytes:
+            shown.pop()
+            records.cells = cells[: len(shown)]
             records.notes.append(
-                f"the last {len(records.cells) - count} of {len(records.cells)} cells are left out, so that the page stays small; "
+                f"the last {len(cells) - len(shown)} of {len(cells)} cells are left out, so that the page stays small; "
                 "give fewer files or fewer lines"
             )
-            return records.cells[:count]
-    return records.cells
+            break
+    return shown
 
 
 def _group(group, cells):
@@ -118,21 +133,22 @@ class _Details:
 
 def _cell_data(records, values, max_bytes):
     """All data of cells on the page."""
-    cells = records.cells = _fitting_cells(records, max_bytes, values)
+    shown = _fitting_cells(records, max_bytes, values)
+    cells, rows = records.cells, [own for own, *_ in shown]
     groups = groups_of(cells, records.verdicts)
     for group in groups:
         for number, label in zip(group.cells, group.labels):
-            cells[number].row.append(label)
+            rows[number].append(label)
     history, moves = shown_history(cells)
     made = {
-        "fields": list(FIELDS),
-        "shared": [name for name, is_shared in FIELDS.items() if is_shared],
+        "fields": list(COLUMNS),
+        "shared": [name for name, (is_shared, _) in COLUMNS.items() if is_shared],
         "values": values.values,
         "history": history,
         "words": [*summary_sentences(groups, cells), *moves],
         "groups": [_group(group, cells) for group in groups],
         "sweeps": sweeps_of(cells, records.verdicts),
-        "cells": [cell.row for cell in cells],
+        "cells": rows,
         "older": [number for number, cell in enumerate(cells) if cell.is_older],
     }
     used = (
@@ -140,8 +156,8 @@ def _cell_data(records, values, max_bytes):
     )
     details = _Details(max(max_bytes - used, 0))
     made |= {
-        "curves": details.fitting([cell.curve for cell in cells]),
-        "rounds": details.fitting([cell.rounds for cell in cells]),
+        "curves": details.fitting([own for _, own, _ in shown]),
+        "rounds": details.fitting([own for *_, own in shown]),
     }
     if details.missing:
         records.notes.append(

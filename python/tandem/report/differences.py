@@ -31,9 +31,9 @@ def _row(cell, name, number):
 
 
 def differences(old, new, cells):
-    """JSON text of the comparison. `cells`: ShownCells of the new file. Raises RecordError as tandem compare
+    """JSON text of the comparison. `cells`: Cells of the new file. Raises RecordError as tandem compare
     does."""
-    numbers = {cell.recorded.key: number for number, cell in enumerate(cells) if not cell.is_older}
+    numbers = {cell.key: number for number, cell in enumerate(cells) if not cell.is_older}
     before, after, matched = matched_files(old, new, level=LEVEL)
     labels, common = label([cell.before for cell in matched.cells])
     return dumped(

@@ -4,7 +4,7 @@
 import dataclasses
 
 from ..comparison.naming import label
-from ..verdicts import TimedCell, verdict_of
+from ..verdicts import verdict_of
 
 # Settings that determine the candidate pairs, and their default values, which titles leave out.
 BOUNDS = {
@@ -31,53 +31,39 @@ class Group:
     answers_differ: bool = False
 
 
-def _bounds(recorded):
-    return {name: recorded.settings.get(name, usual) for name, usual in BOUNDS.items()}
+def _bounds(cell):
+    return {name: cell.described.get(name, usual) for name, usual in BOUNDS.items()}
 
 
 def _key(cell):
-    recorded = cell.recorded
     return (
         cell.scene_digest,
         cell.scene,
-        *(recorded.names[name] for name in ("devices", "model", "driver", "frames", "handling")),
-        *_bounds(recorded).values(),
+        *(cell.names[name] for name in ("devices", "model", "driver", "frames", "handling")),
+        *_bounds(cell).values(),
     )
 
 
 def _title(cell, scene):
-    names = cell.recorded.names
+    names = cell.names
     parts = [
         scene,
         names["frames"],
-        *(f"{name} = {value}" for name, value in _bounds(cell.recorded).items() if value != BOUNDS[name]),
+        *(f"{name} = {value}" for name, value in _bounds(cell).items() if value != BOUNDS[name]),
     ]
     parts += [names["handling"]] if names["handling"] else []
     return f"{', '.join(parts)}, on {names['devices']} ({names['model']})"
 
 
 def is_rankable(cell):
-    """Whether a ShownCell has times of correct work."""
-    recorded = cell.recorded
-    has_pairs = recorded.pairs is None or recorded.pairs.count > 0
-    return recorded.status == "ok" and bool(recorded.rounds) and not cell.is_older and has_pairs
-
-
-def timed(recorded):
-    """The verdicts.TimedCell of a RecordedCell."""
-    return TimedCell(
-        recorded.key,
-        recorded.rounds,
-        recorded.session,
-        recorded.names["devices"],
-        recorded.chosen,
-        recorded.pairs,
-    )
+    """Whether a cell has times of correct work."""
+    has_pairs = cell.pairs is None or cell.pairs.count > 0
+    return cell.status == "ok" and bool(cell.rounds) and not cell.is_older and has_pairs
 
 
 def _rank(group, cells, recorded):
     rankable = [number for number in group.cells if is_rankable(cells[number])]
-    verdict = verdict_of([timed(cells[number].recorded) for number in rankable], recorded)
+    verdict = verdict_of([cells[number] for number in rankable], recorded)
     group.answers_differ = verdict.answers_differ
     group.ranked = [dataclasses.replace(one, cell=rankable[one.cell]) for one in verdict.cells]
 
@@ -93,5 +79,5 @@ def groups_of(cells, verdicts=None):
         groups.setdefault(_key(cell), Group(_title(cell, scene))).cells.append(number)
     for group in groups.values():
         _rank(group, cells, verdicts)
-        group.labels = label([cells[number].recorded for number in group.cells])[0]
+        group.labels = label([cells[number] for number in group.cells])[0]
     return list(groups.values())

@@ -3,22 +3,19 @@
 moved, by the rule of 'tandem compare'."""
 
 import dataclasses
-import statistics
 
 from ..comparison.matching import CHANGES, VERDICTS, match
 from ..comparison.naming import label
 from ..comparison.pooling import counting, pooled
 from .numbers import digits, optional, rounded
-from .shown_cells import FIELDS
 
 LEVEL = 0.05  # probability of any false move in a page
 MAX_KEYS, MAX_NAMED = 500, 3
-DATE = list(FIELDS).index("date")
 
 
 @dataclasses.dataclass
 class Point:
-    """The records of one cell by one program, its sessions pooled. compared: the matching.ComparedCell with
+    """The records of one cell by one program, its sessions pooled. compared: the matching.Compared with
     the cell since which the time has not moved; None for the first point."""
 
     program: int
@@ -28,11 +25,6 @@ class Point:
     @property
     def moved(self):
         return self.compared is not None and self.compared.verdict in CHANGES
-
-    @property
-    def ms(self):
-        """Milliseconds a frame: the median of rounds, or of sessions."""
-        return statistics.median(self.cell.times()) / self.cell.frames / 1e6
 
 
 @dataclasses.dataclass
@@ -55,7 +47,7 @@ def _ordered(cells):
     no date."""
     dates = {}
     for cell in cells:
-        dates.setdefault(cell.recorded.program, []).append(cell.row[DATE] or "")
+        dates.setdefault(cell.program, []).append(cell.date)
     first = {program: min(found) for program, found in dates.items()}
     return sorted(first, key=first.get) if all(first.values()) else list(first)
 
@@ -100,14 +92,12 @@ def _find_moves(points, programs):
 
 
 def history_of(cells):
-    """History of ShownCells; None if no cell has records of two programs."""
-    good = [cell for cell in cells if cell.recorded.status == "ok" and cell.recorded.rounds]
+    """History of Cells; None if no cell has records of two programs."""
+    good = [cell for cell in cells if cell.status == "ok" and cell.rounds]
     programs = _ordered(good)
     by_key = {}
     for cell in good:
-        by_key.setdefault(cell.recorded.key, {}).setdefault(programs.index(cell.recorded.program), []).append(
-            cell.recorded
-        )
+        by_key.setdefault(cell.key, {}).setdefault(programs.index(cell.program), []).append(cell)
     several = {key: found for key, found in by_key.items() if len(found) > 1}
     if not several:
         return None
@@ -139,7 +129,7 @@ def _title(name, points, programs):
 def _point(point):
     compared, row = (
         point.compared,
-        [point.program, rounded(point.ms), point.cell.all_rounds, point.cell.sessions or 1],
+        [point.program, rounded(point.cell.median_ms), point.cell.all_rounds, point.cell.sessions or 1],
     )
     if compared is None:
         return [*row, None, None, ""]
@@ -153,7 +143,7 @@ def _point(point):
 
 
 def shown_history(cells):
-    """The History of ShownCells as JSON values, and its sentences; None and no sentence if no cell has
+    """The History of Cells as JSON values, and its sentences; None and no sentence if no cell has
     records of two programs."""
     found = history_of(cells)
     if found is None:

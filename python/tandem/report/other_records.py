@@ -5,7 +5,7 @@ a record that lacks fields of its schema."""
 import dataclasses
 import os
 
-from ..cell_rows import at
+from ..fields import at
 from .conditions import conditions_text
 from .numbers import count, is_number, number, rounded, text
 

@@ -6,9 +6,9 @@ import json
 import os
 
 from .. import kinds, lines
+from ..cell import Cell
 from ..verdicts import RecordedVerdicts
 from .other_records import Simulations, shown_ceilings, shown_profile
-from .shown_cells import shown_cell
 
 WHAT_TO_GIVE = "give files that 'tandem run --out', 'profile --out', 'simulate --record' or 'devices --measure --out' wrote"
 MAX_CELLS = 6000  # with more, only one record per key is shown
@@ -24,8 +24,8 @@ LISTS = {
 
 @dataclasses.dataclass
 class Records:
-    """cells: ShownCells. cell_records: number of all records of cells; an interrupted record and its
-    continuation count as one. files: the name and the numbers of records of each kind for each file. notes:
+    """cells: Cells. cell_records: number of all records of cells; an interrupted record and its
+    continuation count as one. paths: of all files. files: the name and the numbers of records of each kind for each file. notes:
     texts on records left out and incomplete lines."""
 
     cells: list = dataclasses.field(default_factory=list)
@@ -35,11 +35,21 @@ class Records:
     simulations: list = dataclasses.field(default_factory=list)
     verdicts: RecordedVerdicts = dataclasses.field(default_factory=RecordedVerdicts)
     files: list = dataclasses.field(default_factory=list)
+    paths: list = dataclasses.field(default_factory=list)
     notes: list = dataclasses.field(default_factory=list)
 
 
-class _Cells:
-    """ShownCells by number, in the order of their records. With more than `max_cells`, keeps only one per
+def _is_copy(cell, other):
+    return (
+        cell.run is not None
+        and cell.run == other.run
+        and cell.samples_by_round == other.samples_by_round
+        and cell.status == other.status
+    )
+
+
+class _Kept:
+    """Cells by number, in the order of their records. With more than `max_cells`, keeps only one per
     key. Leaves out copies, records that another record of the same key continues, and records of interrupted
     cells before a later one."""
 
@@ -49,40 +59,44 @@ class _Cells:
         self.records = self.added = self.older = self.left_out = self.left_out_wrong = 0
 
     def add(self, cell):
-        numbers = self.numbers_by_key.get(cell.recorded.key, [])
+        numbers = self.numbers_by_key.get(cell.key, [])
         if any(
-            self.cells[number].continues(cell) or self.cells[number].is_copy_of(cell) for number in numbers
+            self.cells[number].continues(cell) or _is_copy(cell, self.cells[number]) for number in numbers
         ):
             return
-        interrupted = [number for number in numbers if cell.replaces(self.cells[number])]
+        interrupted = [
+            number
+            for number in numbers
+            if cell.continues(self.cells[number]) or cell.remeasures(self.cells[number])
+        ]
         self._remove(interrupted)
         self.records += 1 - len(interrupted)
         if not self.one_per_key and len(self.cells) == self.max_cells:
             self._keep_newest()
-        numbers = self.numbers_by_key.get(cell.recorded.key, [])
+        numbers = self.numbers_by_key.get(cell.key, [])
         if self.one_per_key and numbers:
             self._replace(numbers[0], cell)
         elif len(self.cells) == self.max_cells:
             self.left_out += 1
-            self.left_out_wrong += cell.recorded.status != "ok"
+            self.left_out_wrong += cell.status != "ok"
         else:
             self.added += 1
             self.cells[self.added] = cell
-            self.numbers_by_key.setdefault(cell.recorded.key, []).append(self.added)
+            self.numbers_by_key.setdefault(cell.key, []).append(self.added)
 
     def _remove(self, numbers):
         for number in numbers:
-            self.numbers_by_key[self.cells.pop(number).recorded.key].remove(number)
+            self.numbers_by_key[self.cells.pop(number).key].remove(number)
 
     def _replace(self, number, cell):
         self.older += 1
-        if cell.recorded.status == "ok" or self.cells[number].recorded.status != "ok":
+        if cell.status == "ok" or self.cells[number].status != "ok":
             self.cells[number] = cell
 
     def mark_older(self):
         """Marks all records of a key as older, except the last one that is ok, or the last one if none is."""
         for numbers in self.numbers_by_key.values():
-            good = [number for number in numbers if self.cells[number].recorded.status == "ok"]
+            good = [number for number in numbers if self.cells[number].status == "ok"]
             newest = (good or numbers or [None])[-1]
             for number in numbers:
                 self.cells[number].is_older = number != newest
@@ -106,7 +120,7 @@ class _Cells:
 
 
 def _checked(text, location):
-    """The kind and the record of a line. shown_cell checks schemas of cells."""
+    """The kind and the record of a line. _add() checks schemas of cells."""
     record = lines.parsed(text, location, WHAT_TO_GIVE)
     kind = kinds.kind_of(record)
     if kind is None:
@@ -124,10 +138,11 @@ class _Reader:
     """Reads several files into one Records."""
 
     def __init__(self, max_cells):
-        self.records, self.cells, self.simulations = Records(), _Cells(max_cells), Simulations()
+        self.records, self.cells, self.simulations = Records(), _Kept(max_cells), Simulations()
         self.left_out = 0
 
     def read(self, path):
+        self.records.paths.append(os.fspath(path))
         self.records.files.append(
             {"name": os.path.basename(path), "cells": 0, "profiles": 0, "simulations": 0, "ceilings": 0}
         )
@@ -150,7 +165,7 @@ class _Reader:
             return
         self.records.files[-1][kind] += 1
         if kind == "cells":
-            self.cells.add(shown_cell(record, path, line, len(self.records.files) - 1))
+            self.cells.add(Cell(lines.checked_cell(record, f"{path}:{line}"), path, line))
         elif kind == "simulations":
             self.simulations.add(record, path)
         else:

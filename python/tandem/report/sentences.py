@@ -2,7 +2,6 @@
 """Sentences on groups: the fastest cell, its lead and significance, and cells that failed or were wrong."""
 
 import dataclasses
-import statistics
 
 from ..text_lines import one_line
 from .leads import Named, compared_text, lead_sentence
@@ -15,14 +14,9 @@ def _label(group, cell):
     return one_line(group.labels[group.cells.index(cell)], 300)
 
 
-def milliseconds(cell):
-    """Milliseconds per frame: the median of a cell's rounds."""
-    return statistics.median(cell.recorded.times()) / cell.frames / 1e6
-
-
 def named_cells(group, cells):
     """leads.Named of the ranked cells of a group, the fastest first."""
-    return [Named(one, _label(group, one.cell), milliseconds(cells[one.cell])) for one in group.ranked]
+    return [Named(one, _label(group, one.cell), cells[one.cell].median_ms) for one in group.ranked]
 
 
 def _fastest(group, cells):
@@ -31,13 +25,18 @@ def _fastest(group, cells):
     return lead_sentence(named) + slowest
 
 
+def _stages(cell):
+    """Milliseconds of the stages that take time."""
+    return {name: ms for name, ms in cell.stage_ms.items() if ms}
+
+
 def _stage_sentence(group, cells):
     """Which stage makes the difference between the fastest cell and the first that takes longer with its
     whole interval; empty without such a cell or without stages."""
     slower = next((one for one in group.ranked[1:] if one.is_told_apart and one.ratio.low > 1), None)
     if slower is None:
         return ""
-    fast, slow = (cells[one.cell].stages for one in (group.ranked[0], slower))
+    fast, slow = (_stages(cells[one.cell]) for one in (group.ranked[0], slower))
     if not fast or not slow:
         return ""
     more = {name: slow.get(name, 0) - fast.get(name, 0) for name in sorted({*fast, *slow})}
@@ -55,7 +54,7 @@ def _not_ranked(group, cells):
     """Sentences on cells that failed or were wrong, cut after about MAX_LETTERS."""
     sentences = ""
     for number in group.cells:
-        cell = cells[number].recorded
+        cell = cells[number]
         if cell.status == "ok":
             continue
         failed = cell.status == "failed"
@@ -99,7 +98,7 @@ def _wins(groups, cells):
     """Pairs of an algorithm and its _Wins, the most wins first."""
 
     def algorithm(ranked):
-        return cells[ranked.cell].recorded.names["algorithm"]
+        return cells[ranked.cell].algorithm
 
     wins = {}
     for group in groups:
@@ -139,7 +138,7 @@ def summary_sentences(groups, cells):
     """Sentences on all groups together: the numbers of wins of each algorithm, and cells that are not ranked."""
     wins = _wins(groups, cells)
     sentences = _wins_sentences(wins) if wins else []
-    failed, wrong = (sum(cell.recorded.status == status for cell in cells) for status in ("failed", "wrong"))
+    failed, wrong = (sum(cell.status == status for cell in cells) for status in ("failed", "wrong"))
     if failed + wrong > 0:
         sentences.append(
             f"{failed} failed and {wrong} gave a wrong answer: they are shown as such and never ranked."
@@ -147,6 +146,6 @@ def summary_sentences(groups, cells):
     older = sum(cell.is_older for cell in cells)
     if older:
         sentences.append(f"{older} were recorded again later: the last record that is ok counts.")
-    if not all(cell.recorded.on_gpus for cell in cells):
+    if not all(cell.on_gpus for cell in cells):
         sentences.append("Times on processors do not predict times on a GPU.")
     return sentences

@@ -6,9 +6,8 @@ import dataclasses
 import math
 
 from ..verdicts import verdict_of
-from .groups import BOUNDS, is_rankable, timed
+from .groups import BOUNDS, is_rankable
 from .leads import Named, lead_sentence, title
-from .sentences import milliseconds
 
 MAX_LINES = 8  # of a chart, the first ones
 MAX_SWEEPS = 100
@@ -39,7 +38,7 @@ def _swept(cells, numbers):
     """Names of settings that are numbers in all these cells and have at least MIN_POINTS values."""
     values = {}
     for number in numbers:
-        for name, value in cells[number].recorded.settings.items():
+        for name, value in cells[number].described.items():
             values.setdefault(name, set()).add(value)
     return [
         name
@@ -54,7 +53,7 @@ def _is_of_scene(setting, cell):
 
 def _of(setting, cell):
     """What a chart is of: cells of one scene with equal pairs, as far as the setting does not change them."""
-    names, settings = cell.recorded.names, cell.recorded.settings
+    names, settings = cell.names, cell.described
     bounds = (
         []
         if setting in BOUNDS
@@ -73,15 +72,12 @@ def _lines(setting, cells, numbers):
     too."""
     lines = {}
     for number in numbers:
-        recorded = cells[number].recorded
-        if setting not in recorded.settings:
+        cell = cells[number]
+        if setting not in cell.described:
             continue
-        names, rest = (
-            recorded.names,
-            {name: value for name, value in recorded.settings.items() if name != setting},
-        )
+        names, rest = (cell.names, {name: value for name, value in cell.described.items() if name != setting})
         key = (
-            _of(setting, cells[number]),
+            _of(setting, cell),
             names["algorithm"],
             names["preset"],
             names["driver"],
@@ -89,7 +85,7 @@ def _lines(setting, cells, numbers):
             *sorted(rest.items()),
         )
         lines.setdefault(key, _Line(names["algorithm"], names["preset"], rest)).points[
-            _value(recorded.settings[setting])
+            _value(cell.described[setting])
         ] = number
     charts = {}
     for (of, *_), line in lines.items():
@@ -116,10 +112,7 @@ def _line_names(lines):
 def _verdict(setting, points, cells, recorded):
     """The Verdict of [name, value, number of a cell] rows. Settings of BOUNDS change the pairs: other answers
     are expected then."""
-    made = [timed(cells[number].recorded) for _, _, number in points]
-    return verdict_of(
-        [dataclasses.replace(one, answer=None) for one in made] if setting in BOUNDS else made, recorded
-    )
+    return verdict_of([cells[number] for _, _, number in points], recorded, setting not in BOUNDS)
 
 
 def _sweep(setting, of, lines, cells, recorded):
@@ -133,7 +126,7 @@ def _sweep(setting, of, lines, cells, recorded):
         Named(
             one,
             f"{setting} = {points[one.cell][1]:.10g}{f' of {points[one.cell][0]}' if len(shown) > 1 else ''}",
-            milliseconds(cells[points[one.cell][2]]),
+            cells[points[one.cell][2]].median_ms,
         )
         for one in verdict.cells
     ]
@@ -158,7 +151,7 @@ def _sweep(setting, of, lines, cells, recorded):
 
 
 def sweeps_of(cells, recorded=None):
-    """Sweeps of ShownCells for the page, by setting. `recorded`: the RecordedVerdicts of their files."""
+    """Sweeps of Cells for the page, by setting. `recorded`: the RecordedVerdicts of their files."""
     numbers = [number for number, cell in enumerate(cells) if is_rankable(cell)]
     charts = (
         (setting, of, lines)

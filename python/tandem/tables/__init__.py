@@ -15,6 +15,7 @@ error line for a file without records, with 3 if standard output cannot be writt
 import argparse
 
 from .. import kinds
+from ..cell import Cell
 from ..commands import Parser, run, warn
 from . import ceilings, cells, profiles, simulations
 from .naming import Devices
@@ -23,13 +24,15 @@ from .naming import Devices
 def as_markdown(files):
     """Tables of all records of these files. Raises RecordError."""
     devices, runs = Devices(), simulations.Simulations()
-    row_types = {"cell": cells.Cell, "profile": profiles.Profile, "ceilings": ceilings.Ceilings}
-    rows = {kind: [] for kind in row_types}
+    row_types = {"profile": profiles.Profile, "ceilings": ceilings.Ceilings}
+    rows = {kind: [] for kind in ("cell", *row_types)}
     for file in files:
         for location, kind, record in kinds.each(file, warn):
             with kinds.fields_of(kind, location):
                 if kind == "simulation":
                     runs.add(record, file, devices)
+                elif kind == "cell":
+                    rows[kind].append(cells.Row(Cell(record, *location.rsplit(":", 1)), devices))
                 elif kind != "verdict":
                     rows[kind].append(row_types[kind](record, devices))
     return "".join(

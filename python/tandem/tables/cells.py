@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Tables of cells: stages for each scene, and ratios of the time of gProximity to that of chunked."""
 
-from .. import cell_rows
+from ..fields import at
 from .naming import Named, labels
 from .wording import notes, number, table, with_interval
 
@@ -19,65 +19,38 @@ BOUNDS = {
     "placement": "rounded",
     "origin": "world",
 }
-# Kernels that the paper's release has too. Our refit has a launch for strips and one for tops; our balance
-# has one that plans and one that moves. In the release, the host or these kernels do the work of seeds, body
-# pairs and decisions.
-RELEASE_KERNELS = (
-    "transform_vertices",
-    "refit_tops",
-    "traverse",
-    "traverse_in_groups",
-    "traverse_queues",
-    "plan_balance",
-    "generate_contacts",
-)
 MAX_RATIOS = 200  # per table; with more, each cell is compared only with the fastest chunked cell
 
 
-class Cell(Named):
-    """The values of a record in tables: milliseconds per frame by stage, launches and waits per frame, the
-    total, notes. Cells of equal `rank` are comparable, as in the table of tandem run: correct cells with
-    pairs, on one device with one output. None: not comparable."""
+class Row(Named):
+    """The values of a Cell in tables: milliseconds per frame by stage, launches and waits per frame, the total,
+    notes. Rows of equal `rank` are comparable, as in the table of tandem run: of correct cells with pairs, on
+    one device with one output. None: not comparable. Files have many cells, so that a row keeps no more."""
 
-    def __init__(self, record, devices):
-        super().__init__(record, devices)
-        frames = cell_rows.frames_of(record)
-        self._read_stages(record["stages"], frames)
-        times = record.get("kernel_times") if self.family[0] in ("chunked", "gproximity") else None
-        self.release_launches = (
-            sum(times[kernel]["launches"] for kernel in RELEASE_KERNELS if kernel in times) / frames
-            if times
-            else None
-        )
-        total = record["total_ns"] or {}
-        self.total = total.get("median", 0) / frames / 1e6
-        self.total_text = with_interval(total, 1e-6 / frames, len(set(total.get("rounds", []))))
-        pairs = (record["work"] or {}).get("candidate_pairs")
-        self.pairs = None if pairs is None else sum(pairs) / frames
-        self.notes = notes(record)
-        own = dict(self.settings)
-        self.rank = (
-            self.once((self.devices, own.get("output")))
-            if record["status"] == "ok" and self.pairs and self.total
-            else None
-        )
-        self.heading = self.once(
-            self.heading
-            + "".join(
-                f", {name} = {own[name]}" for name, usual in BOUNDS.items() if own.get(name, usual) != usual
-            )
-        )
+    def __init__(self, cell, devices):
+        super().__init__(cell.record, devices)
+        self._read_stages(cell.record["stages"], cell.frames)
+        self.launches, self.waits = (cell.of_stages(what) / cell.frames for what in ("launches", "waits"))
+        released = cell.release_launches
+        self.release_launches = None if released is None else released / cell.frames
+        total = cell.record["total_ns"] or {}
+        self.total = cell.ms() or 0
+        self.total_text = with_interval(total, 1e-6 / cell.frames, len(set(total.get("rounds", []))))
+        pairs = cell.total_work("candidate_pairs")
+        self.pairs = None if pairs is None else pairs / cell.frames
+        self.notes = notes(cell.record)
+        is_ranked = cell.status == "ok" and self.pairs and self.total
+        self.rank = self.once((self.devices, cell.asked.get("output"))) if is_ranked else None
+        bounds = [name for name, usual in BOUNDS.items() if cell.asked.get(name, usual) != usual]
+        self.heading = self.once(self.heading + "".join(f", {name} = {cell.asked[name]}" for name in bounds))
 
     def _read_stages(self, stages, frames):
-        def mean(stage, what):  # over the frames of a replay; the median over the replays that time it
-            column = stages.get(stage, {}).get(what, 0)
-            return (column.get("median", 0) if isinstance(column, dict) else column) / frames
-
-        by_host = (*HOST, "broad") if not mean("broad", "launches") else HOST
+        by_host = (*HOST, "broad") if not at(stages, "broad", "launches") else HOST
         self.stage = {
-            s: mean(s, "host_ns" if s in by_host else "device_ns") / 1e6 for s in STAGES if s in stages
+            s: (at(stages, s, "host_ns" if s in by_host else "device_ns", "median") or 0) / frames / 1e6
+            for s in STAGES
+            if s in stages
         }
-        self.launches, self.waits = (sum(mean(s, what) for s in stages) for what in ("launches", "waits"))
 
     def kernels(self):
         """Milliseconds per frame of the stages that are kernels in the paper."""
