@@ -16,8 +16,9 @@ import numpy
 from program import SOURCE
 
 sys.path.insert(0, str(SOURCE / "python"))
-from tandem import comparison, lines, resampling  # noqa: E402
+from tandem import comparison, lines  # noqa: E402
 from tandem.comparison import cells, matching, naming, notes, texts  # noqa: E402
+from tandem.ratio import Ratio  # noqa: E402
 
 
 def record(key="8", samples=(1,), rounds=None, session=None):
@@ -344,20 +345,20 @@ class Rates(unittest.TestCase):
     share, and a change of the first cell alone."""
 
     def setUp(self):
-        # Results depend on ranks and on the ratio's value; computing its interval would take most of the
-        # time.
-        def value_of(before, after):
-            return resampling.Ratio(
-                float(numpy.exp(numpy.median(numpy.log(after)) - numpy.median(numpy.log(before)))), 1, 1, 0.01
+        # Results depend on ranks and on the ratio's value; computing its interval would take most of the time.
+        def unpaired(before, after):
+            return Ratio(
+                float(numpy.exp(numpy.median(numpy.subtract.outer(numpy.log(after), numpy.log(before))))),
+                1,
+                1,
+                0.01,
             )
 
         def paired(before, after):
-            return resampling.Ratio(
-                float(numpy.exp(numpy.median(numpy.log(numpy.divide(after, before))))), 1, 1, 0.01
-            )
+            return Ratio(float(numpy.exp(numpy.median(numpy.log(numpy.divide(after, before))))), 1, 1, 0.01)
 
-        for name, cheap in (("unpaired_ratio", value_of), ("paired_ratio", paired)):
-            patch = mock.patch.object(matching.resampling, name, cheap)
+        for name, cheap in (("unpaired_ratio", unpaired), ("paired_ratio", paired)):
+            patch = mock.patch.object(matching.rank_tests, name, cheap)
             patch.start()
             self.addCleanup(patch.stop)
 

@@ -347,30 +347,36 @@ class Commands(Case):
         self.assertTrue(out.splitlines()[-1].startswith(f"{page}: "))
         self.assertIn("of the difference from", out)
 
-    def test_numpy_is_enough_for_a_report(self):
-        """scripts/setup installs no other package of Python for scripts/run."""
+    def without_packages(self, *words):
+        """tandem report in a Python that has only NumPy, which scripts/setup installs for scripts/run."""
         text = (
             "import importlib.util, sys\nfind = importlib.util.find_spec\nwithout = ('pandas', 'scipy', 'matplotlib')\n"
             "sys.modules.update(dict.fromkeys(without))\nimportlib.util.find_spec = lambda name: None if name in without else find(name)\n"
             f"sys.path.insert(0, {str(SOURCE / 'python')!r})\nfrom tandem.commands import report\nsys.exit(report.main(sys.argv[2:], sys.argv[1]))"
         )
-        page = self.work / "numpy.html"
-        done = subprocess.run(
-            [
-                "/usr/bin/python3",
-                "-c",
-                text,
-                PROGRAM,
-                H200 / "convert.jsonl",
-                "--output",
-                page,
-                "--sentences",
-            ],
+        return subprocess.run(
+            ["/usr/bin/python3", "-c", text, PROGRAM, *words],
             capture_output=True,
             text=True,
+            env=os.environ | {"TANDEM_PYTHON_TRIED": "1"},
         )
+
+    def test_one_session_needs_no_scipy(self):
+        """Its verdict is recorded. Another verdict, and the sentence of a chart of a part of its cells, need scipy."""
+        records, page = self.work / "session.jsonl", self.work / "numpy.html"
+        chosen = ["--algorithm", "tiled,chunked", "--set", "seed_threshold=0,10,100", "--repeat", 3]
+        status, text, errors = tandem("run", "plates", "--frames", "60:60", *chosen, "--out", records)
+        self.assertEqual((status, errors), (0, []), text)
+        done = self.without_packages(records, f"--output={page}", "--sentences")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
-        self.assertIn("numpy.html: ", done.stdout)
+        self.assertIn(" of 4 with ", done.stdout)
+        self.assertIn("Times over seed_threshold", page.read_text())
+        more = [json.loads(line) for line in records.read_text().splitlines()]
+        cells = [record | {"session": "another"} for record in more if "kind" not in record]
+        records.write_text("".join(json.dumps(cell) + "\n" for cell in cells))
+        done = self.without_packages(records, f"--output={page}")
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertIn("tandem report needs python3 with scipy; install python3-scipy", done.stderr)
 
     def test_options_reach_the_export(self):
         page = self.work / "meshes.html"

@@ -36,7 +36,7 @@ struct RankedCell {
 };
 
 /// Which of several comparable cells is the fastest, and which others are told apart from it.
-/// python/tandem/verdicts.py has the same rule.
+/// python/tandem/verdicts.py reads it, and has the same rule for records of several runs.
 struct Verdict {
     std::vector<RankedCell> cells; ///< by median, then by key
     bool answers_differ = false;   ///< unchecked cells found different pairs: none is the fastest

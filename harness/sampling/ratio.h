@@ -12,7 +12,6 @@ struct Ratio {
 
 /// The median of paired ratios, given as their logarithms; at least one. The interval is a percentile
 /// bootstrap (Efron 1979; 1,000 resamples from a fixed seed), expanded by interval_tail().
-/// python/tandem/resampling.py computes the same bits.
 Ratio paired_ratio(std::span<const double> log_ratios);
 
 } // namespace tandem

@@ -1,84 +1,64 @@
 # SPDX-License-Identifier: MIT
-"""p-values of two-sided rank tests for tandem compare. Small tests are exact, also with ties, which scipy's
-exact tests do not support."""
+"""Two-sided rank tests by scipy for tandem compare, and the ratios that belong to them: the estimates of Hodges
+and Lehmann (1963, Annals of Mathematical Statistics 34), with the intervals of all ratios that the test does not
+reject (Hollander, Wolfe and Chicken 2014, 3.2, 3.3, 4.2 and 4.3). For normal noise the error of this estimate is
+2 % larger than that of the mean, and the error of the median 25 %."""
 
+import bisect
 import functools
 import math
-import statistics
 
 import numpy
+import scipy.stats
 
-MAX_PAIRS = 50
-MAX_SUMS = 4096  # number of values of the smaller side times number of all values
+from .ratio import Ratio
 
-
-def _doubled_ranks(values):
-    """Doubled ranks from 1, and the sum of t^3 - t over groups of t equal values. Ties have the mean of their
-    ranks, which is a whole number when doubled."""
-    _, groups, counts = numpy.unique(values, return_inverse=True, return_counts=True)
-    ends = numpy.cumsum(counts)
-    tied = counts.astype(float)
-    return (2 * ends - counts + 1)[groups], float((tied**3 - tied).sum())
+MAX_PAIRS = 50  # of exact tests
+MAX_ARRANGEMENTS = 20000  # of exact tests of values with ties
+MAX_SUMS = 4096  # number of values of the smaller side times number of all values, of exact tests
+LEVEL = 0.05  # of intervals
 
 
-def _two_sided(counts, at):
-    below, equal, above = counts[:at].sum(), counts[at], counts[at + 1 :].sum()
-    return float(min(1.0, 2 * (min(below, above) + equal) / (below + equal + above))), True
-
-
-def _approximate(total, mean, variance):
-    p = math.erfc(max(0.0, abs(total - mean) - 0.5) / math.sqrt(2 * variance)) if variance > 0 else 1.0
-    return p, False
-
-
-@functools.lru_cache(maxsize=64)
-def _sets(ranks):
-    """Number of sets of ranks by their sum. The cache helps because, without ties, cells with equally many
-    rounds have equal ranks."""
-    counts = numpy.zeros(sum(ranks) + 1)
-    counts[0] = 1
-    for rank in ranks:
-        counts[rank:] = counts[rank:] + counts[:-rank]
-    return counts
-
-
-@functools.lru_cache(maxsize=64)
-def _sets_of(size, ranks):
-    """Number of sets of `size` ranks by their sum. `ranks` ascend."""
-    counts = numpy.zeros((size + 1, sum(ranks[-size:]) + 1))
-    counts[0, 0] = 1
-    for rank in ranks:
-        if rank < counts.shape[1]:
-            counts[1:, rank:] = counts[1:, rank:] + counts[:-1, :-rank]
-    return counts[size]
+def _of_arrangements(values, kind):
+    """p of the sum of the first of several lists of ranks, from all their arrangements."""
+    of = lambda first, *rest, axis: numpy.sum(first, axis=axis)
+    return scipy.stats.permutation_test(
+        values, of, permutation_type=kind, vectorized=True, n_resamples=MAX_ARRANGEMENTS
+    ).pvalue
 
 
 def signed_ranks(differences):
     """p of Wilcoxon's signed-rank test, and whether it is exact. Ignores zero differences."""
     differences = numpy.asarray(differences, float)
     differences = differences[differences != 0]
-    n = len(differences)
-    if n == 0:
+    size = len(differences)
+    if size == 0:
         return 1.0, True
-    ranks, ties = _doubled_ranks(numpy.abs(differences))
-    total = int(ranks[differences > 0].sum())
-    if n > MAX_PAIRS:
-        return _approximate(total / 2, n * (n + 1) / 4, n * (n + 1) * (2 * n + 1) / 24 - ties / 48)
-    return _two_sided(_sets(tuple(sorted(ranks))), total)
+    if _has_ties(numpy.abs(differences)) and 2**size <= MAX_ARRANGEMENTS:
+        ranks = scipy.stats.rankdata(numpy.abs(differences)) * numpy.sign(differences)
+        return float(_of_arrangements([ranks], "samples")), True
+    is_exact = size <= MAX_PAIRS and not _has_ties(numpy.abs(differences))
+    method = "exact" if is_exact else "approx"
+    p = float(scipy.stats.wilcoxon(differences, correction=True, method=method).pvalue)
+    return max(p, least_signed_rank_p(size)), is_exact
 
 
 def rank_sums(before, after):
     """p of Wilcoxon's rank-sum test (Mann and Whitney's U), and whether it is exact."""
-    if len(before) > len(after):
-        before, after = after, before
-    n, m = len(before), len(after)
-    ranks, ties = _doubled_ranks(numpy.concatenate([before, after]))
-    total = int(ranks[:n].sum())
-    if n * (n + m) > MAX_SUMS:
-        return _approximate(
-            total / 2, n * (n + m + 1) / 2, n * m / 12 * (n + m + 1 - ties / ((n + m) * (n + m - 1)))
-        )
-    return _two_sided(_sets_of(n, tuple(sorted(ranks))), total)
+    values, smaller = numpy.concatenate([before, after]), min(len(before), len(after))
+    if _has_ties(values) and smaller > 1 and math.comb(len(values), smaller) <= MAX_ARRANGEMENTS:
+        ranks = scipy.stats.rankdata(values)
+        return float(_of_arrangements([ranks[: len(before)], ranks[len(before) :]], "independent")), True
+    if (values == values[0]).all():
+        return 1.0, False
+    is_exact = not _has_ties(values) and smaller * len(values) <= MAX_SUMS
+    method = "exact" if is_exact else "asymptotic"
+    p = float(scipy.stats.mannwhitneyu(before, after, method=method).pvalue)
+    return max(p, least_rank_sum_p(len(before), len(after))), is_exact
+
+
+def _has_ties(values):
+    return len(numpy.unique(values)) < len(values)
 
 
 def least_signed_rank_p(pairs):
@@ -87,39 +67,71 @@ def least_signed_rank_p(pairs):
 
 
 def least_rank_sum_p(before, after):
-    small, large, p = min(before, after), max(before, after), 2.0
-    for i in range(1, small + 1):
-        p *= i / (large + i)
-    return min(1.0, p)
+    return min(1.0, 2 / math.comb(before + after, before))
 
 
-def _tail(counts, most):
-    """The largest number whose lower tail in `counts` has at most the probability `most`, and this
-    probability. If 0 has more: 0."""
-    below = numpy.cumsum(counts) / counts.sum()
-    at = max(0, int(numpy.searchsorted(below, most, "right")) - 1)
-    return at, float(below[at])
+@functools.cache
+def signed_rank_tail(pairs):
+    """How many of the ascending estimates are outside of an interval on each side, and the probability of that:
+    the largest sum of positive ranks of `pairs` differences that the test rejects. If it rejects none: 0."""
+
+    def p(total):
+        signs = numpy.full(pairs, -1)
+        for rank in range(pairs, 0, -1):  # the largest ranks first, as far as they fit
+            if rank <= total:
+                signs[rank - 1], total = 1, total - rank
+        return signed_ranks(signs * numpy.arange(1, pairs + 1))[0]
+
+    return _tail(p, pairs * (pairs + 1) // 4)
 
 
-def _approximate_tail(mean, variance, most):
-    at = max(0, math.floor(mean - 0.5 + statistics.NormalDist().inv_cdf(most) * math.sqrt(variance)))
-    return at, 0.5 * math.erfc((mean - 0.5 - at) / math.sqrt(2 * variance))
-
-
-def signed_rank_tail(pairs, most):
-    """The largest sum of signed ranks, without ties, whose lower tail has at most the probability `most`, and
-    this probability. If sum 0 has more: 0 and its probability."""
-    if pairs > MAX_PAIRS:
-        return _approximate_tail(pairs * (pairs + 1) / 4, pairs * (pairs + 1) * (2 * pairs + 1) / 24, most)
-    return _tail(_sets(tuple(range(1, pairs + 1))), most)
-
-
-def rank_sum_tail(before, after, most):
+@functools.cache
+def rank_sum_tail(before, after):
     """As signed_rank_tail, of Mann and Whitney's U."""
-    small = min(before, after)
-    if small * (before + after) > MAX_SUMS:
-        return _approximate_tail(before * after / 2, before * after * (before + after + 1) / 12, most)
-    return _tail(_sets_of(small, tuple(range(1, before + after + 1)))[small * (small + 1) // 2 :], most)
+
+    def p(u):
+        above, rest = divmod(u, after)  # so many of `before` exceed all of `after`, and one exceeds `rest`
+        low, high = -1 - numpy.arange(before - above - 1), after + numpy.arange(above)
+        return rank_sums([*low, rest - 0.5, *high][:before], numpy.arange(after))[0]
+
+    return _tail(p, before * after // 2)
+
+
+def _tail(p, most):
+    """The largest number up to `most` whose p, which ascends, is at most LEVEL, and half of this p."""
+    number = max(0, bisect.bisect_right(range(most + 1), LEVEL, key=p) - 1)
+    return number, p(number) / 2
+
+
+def _ratio(estimates, tail, freedom):
+    """estimates: all, in ascending order. tail: how many of them are outside of the interval on each side, and
+    the probability of that."""
+    outside, probability = tail
+    value = math.exp(numpy.median(estimates))
+    if 2 * probability > LEVEL:  # the test rejects no ratio
+        return Ratio(value, None, None, None)
+    low, high = float(estimates[outside]), float(estimates[-1 - outside])
+    # The interval of the mean of normal values with this probability is as wide.
+    error = (high - low) / (2 * scipy.stats.t.isf(probability, freedom))
+    return Ratio(value, math.exp(low), math.exp(high), float(error))
+
+
+def paired_ratio(before, after):
+    """The median of the means of all pairs of logarithms of ratios of paired values; each logarithm is also a
+    pair with itself. Fewer than six values have no interval."""
+    logs = numpy.log(numpy.asarray(after, float) / numpy.asarray(before, float))
+    one, other = numpy.triu_indices(len(logs))
+    estimates = numpy.sort((logs[one] + logs[other]) / 2)
+    return _ratio(estimates, signed_rank_tail(len(logs)), max(1, len(logs) - 1))
+
+
+def unpaired_ratio(before, after):
+    """The median of all differences of logarithms of unpaired values. Very few values, as 3 and 3 or 12 and
+    1, have no interval."""
+    before, after = numpy.log(numpy.asarray(before, float)), numpy.log(numpy.asarray(after, float))
+    estimates = numpy.sort(numpy.subtract.outer(after, before).ravel())
+    sizes = len(before), len(after)
+    return _ratio(estimates, rank_sum_tail(*sizes), max(1, sum(sizes) - 2))
 
 
 def holm(p):

@@ -8,9 +8,10 @@ records of several runs, it computes the verdict by the same rule."""
 import dataclasses
 import statistics
 
-from . import lines, resampling
+from . import lines
+from .ratio import Ratio
 
-ONE = resampling.Ratio(1.0, 1.0, 1.0, 0.0)
+ONE = Ratio(1.0, 1.0, 1.0, 0.0)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -19,7 +20,7 @@ class Ranked:
     has_interval: there are at least two rounds. is_told_apart: the interval excludes 1."""
 
     cell: int
-    ratio: resampling.Ratio = ONE
+    ratio: Ratio = ONE
     has_interval: bool = False
 
     @property
@@ -53,6 +54,8 @@ def _median(cell):
 
 def _compared(number, base, cell):
     """Rounds of equal number are pairs within one session, because they were measured side by side."""
+    from . import resampling  # needs scipy, which recorded verdicts do not need
+
     if base.session and base.session == cell.session:
         common = [at for at in cell.rounds if at in base.rounds]
         if common:
@@ -61,7 +64,7 @@ def _compared(number, base, cell):
             )
             return Ranked(number, ratio, len(common) > 1)
         value = _median(cell) / _median(base)
-        return Ranked(number, resampling.Ratio(value, value, value, 0.0), False)
+        return Ranked(number, Ratio(value, value, value, 0.0), False)
     ratio = resampling.unpaired_ratio(list(base.rounds.values()), list(cell.rounds.values()))
     return Ranked(number, ratio, min(len(base.rounds), len(cell.rounds)) > 1)
 
@@ -127,7 +130,7 @@ class RecordedVerdicts:
 def _recorded(cell):
     value, low, high = (cell[name] for name in ("ratio", "low", "high"))
     has_interval = low is not None
-    return resampling.Ratio(
+    return Ratio(
         float(value), float(low if has_interval else value), float(high if has_interval else value), 0.0
     ), has_interval
 

@@ -31,8 +31,8 @@ TEST(SamplingRatio, EqualValuesHaveNoInterval) {
     EXPECT_DOUBLE_EQ(ratio.high, ratio.value);
 }
 
-/// tests/rank_tests.py has the same numbers for tandem.resampling.
-TEST(SamplingRatio, EqualsThePythonPackage) {
+/// The seed and the generator are fixed, so that a run on any machine has these numbers.
+TEST(SamplingRatio, IsReproducible) {
     std::vector<double> logs;
     for (int i = 0; i < 12; ++i) logs.push_back(0.01 * (i * 7 % 11) - 0.03);
     const auto ratio = paired_ratio(logs);

@@ -90,7 +90,7 @@ def _compared_programs(options):
 
 
 def _make(options):
-    check_packages("tandem compare", ("numpy",))
+    check_packages("tandem compare", ("numpy", "scipy"))
     return _compared_programs(options) if options.run else _compared_files(options)
 
 

@@ -75,13 +75,13 @@ def _write(options, program):
         options.output, [*options.files, *filter(None, (options.against, options.scene))], ".partial"
     )
     page = open_page("Report of tandem", True, bool(options.scene), program, "tandem report")
-    check_packages("tandem report", ("numpy",))
     from ..report.data import data_of, size_of
-    from ..report.differences import differences
     from ..report.reading import read_records
 
     records, empty = read_records(options.files), size_of(html_of(page))
     if options.against:
+        from ..report.differences import differences
+
         page.data["differences"] = differences(options.against, options.files[0], records.cells)
     scene = _add_scene(page, options, program)
     free_bytes = max(MAX_BYTES - empty - sum(map(size_of, page.data.values())), 0)
@@ -101,6 +101,9 @@ def _make(options, program):
         return _write(options, program), 0
     except ExportEnded as ended:
         return "", ended.code
+    except ModuleNotFoundError as missing:  # of trends, of --against, and where no verdict is recorded
+        check_packages("tandem report", (missing.name.partition(".")[0],))
+        raise
 
 
 def main(arguments, program):

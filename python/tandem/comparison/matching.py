@@ -6,8 +6,9 @@ import dataclasses
 import math
 import statistics
 
-from .. import rank_ratios, rank_tests, resampling
+from .. import rank_tests
 from ..cell import Cell
+from ..ratio import Ratio
 from .pooling import is_minority, pooled
 
 POWER = 0.8  # probability that the least effect is detected
@@ -53,7 +54,7 @@ class Compared:
     before_ns: float
     after_ns: float
     verdict: str = "too_few"
-    ratio: resampling.Ratio | None = None
+    ratio: Ratio | None = None
     p: float = 1
     exact: bool = True
     least_p: float = 1
@@ -148,10 +149,10 @@ def _compared(before, after, threshold, undisturbed=False):
         return cell
     cell.least_p = _least_p(paired, len(old), len(new))
     if paired:
-        cell.ratio = rank_ratios.paired_ratio(old, new)
+        cell.ratio = rank_tests.paired_ratio(old, new)
         cell.p, cell.exact = rank_tests.signed_ranks([math.log(b / a) for a, b in zip(old, new)])
     else:
-        cell.ratio = rank_ratios.unpaired_ratio(old, new)
+        cell.ratio = rank_tests.unpaired_ratio(old, new)
         cell.p, cell.exact = rank_tests.rank_sums(old, new)
     return cell
 

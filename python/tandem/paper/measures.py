@@ -268,10 +268,8 @@ def deciles(claim, folder, scene, k):
     """Ninth over first decile of a time over steps."""
     run = _on_device(claim, folder, scene)
     values = _curve(run, claim.fields["quantity"])
-    of = lambda rows: numpy.quantile(rows, 0.9, axis=-1) / numpy.quantile(rows, 0.1, axis=-1)
-    return _of_steps(
-        run, of(values), *resampling.bootstrap_interval(len(values), lambda drawn: of(values[drawn]))
-    )
+    of = lambda own, axis=-1: numpy.quantile(own, 0.9, axis=axis) / numpy.quantile(own, 0.1, axis=axis)
+    return _of_steps(run, of(values), *resampling.bootstrap_interval(of, values))
 
 
 def mean_of_steps(claim, folder, scene, k):

@@ -6,7 +6,6 @@ import json
 
 from .. import lines
 from .groups import groups_of
-from .history import shown_history
 from .leads import title, which_text
 from .numbers import rounded
 from .reading import WHAT_TO_GIVE
@@ -131,6 +130,16 @@ class _Details:
         return True
 
 
+def _history(cells):
+    """What history.py makes of cells, if several programs recorded one."""
+    programs = {(cell.key, cell.program) for cell in cells}
+    if len(programs) == len({key for key, _ in programs}):
+        return None, []
+    from .history import shown_history  # needs scipy
+
+    return shown_history(cells)
+
+
 def _cell_data(records, values, max_bytes):
     """All data of cells on the page."""
     shown = _fitting_cells(records, max_bytes, values)
@@ -139,7 +148,7 @@ def _cell_data(records, values, max_bytes):
     for group in groups:
         for number, label in zip(group.cells, group.labels):
             rows[number].append(label)
-    history, moves = shown_history(cells)
+    history, moves = _history(cells)
     made = {
         "fields": list(COLUMNS),
         "shared": [name for name, (is_shared, _) in COLUMNS.items() if is_shared],

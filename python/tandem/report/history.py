@@ -4,7 +4,7 @@ moved, by the rule of 'tandem compare'."""
 
 import dataclasses
 
-from ..comparison.matching import CHANGES, VERDICTS, match
+from ..comparison.matching import CHANGES, VERDICTS, match  # needs scipy
 from ..comparison.naming import label
 from ..comparison.pooling import counting, pooled
 from .numbers import digits, optional, rounded

@@ -109,10 +109,20 @@ def _line_names(lines):
     return names
 
 
-def _verdict(setting, points, cells, recorded):
-    """The Verdict of [name, value, number of a cell] rows. Settings of BOUNDS change the pairs: other answers
-    are expected then."""
-    return verdict_of([cells[number] for _, _, number in points], recorded, setting not in BOUNDS)
+def _words(setting, points, cells, recorded, has_lines):
+    """The title and the sentence of a chart of [name, value, number of a cell] rows. Settings of BOUNDS change the
+    pairs: other answers are expected then."""
+    own = [cells[number] for *_, number in points]
+    if _is_of_scene(setting, own[0]):
+        return f"Times over {setting}: each value is a scene of its own", ""
+    try:
+        verdict = verdict_of(own, recorded, setting not in BOUNDS)
+    except ModuleNotFoundError:  # scipy, which only the sentence needs
+        return f"Times over {setting}", ""
+    texts = [f"{setting} = {value:.10g}{f' of {name}' if has_lines else ''}" for name, value, _ in points]
+    named = [Named(one, texts[one.cell], own[one.cell].median_ms) for one in verdict.cells]
+    sentence = "" if verdict.answers_differ else lead_sentence(named, " cells")
+    return title(named, verdict.answers_differ), sentence
 
 
 def _sweep(setting, of, lines, cells, recorded):
@@ -121,22 +131,7 @@ def _sweep(setting, of, lines, cells, recorded):
     points = [
         (name, value, line.points[value]) for name, line in zip(names, shown) for value in sorted(line.points)
     ]
-    verdict = _verdict(setting, points, cells, recorded)
-    named = [
-        Named(
-            one,
-            f"{setting} = {points[one.cell][1]:.10g}{f' of {points[one.cell][0]}' if len(shown) > 1 else ''}",
-            cells[points[one.cell][2]].median_ms,
-        )
-        for one in verdict.cells
-    ]
-    if _is_of_scene(setting, cells[points[0][2]]):
-        heading, words = f"Times over {setting}: each value is a scene of its own", ""
-    else:
-        heading, words = (
-            title(named, verdict.answers_differ),
-            "" if verdict.answers_differ else lead_sentence(named, " cells"),
-        )
+    heading, words = _words(setting, points, cells, recorded, len(shown) > 1)
     return {
         "setting": setting,
         "of": of,
