@@ -79,7 +79,7 @@ class Paper(unittest.TestCase):
 
     def test_bad_use_is_one_line(self):
         for words, says in (
-            ((), "no folder"),
+            ((), "--output"),
             (("-o", self.folder, "--size", "huge"), "--size huge: give small or full"),
             (("-o", self.folder, "--device", "cuda:99"), "cuda:99"),
             ((*self.host, "--steps", "0:3"), "--steps 0:3"),

@@ -4,11 +4,13 @@
 #include "harness/sampling/interrupt.h"
 #include "harness/commands/programs.h"
 #include "base/standard_streams.h"
+#include "base/temporary_directory.h"
 #include "base/error.h"
 
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <fmt/format.h>
 
 namespace tandem {
@@ -20,6 +22,28 @@ namespace fs = std::filesystem;
 constexpr int not_found = 127;
 
 fs::path own_path() { return fs::read_symlink("/proc/self/exe"); }
+
+int run_external_into(const std::string& name, const std::vector<std::string>& words,
+                      const ProgramStreams& streams) {
+    const auto path = external_program(name);
+    setenv("TANDEM_PROGRAM", own_path().c_str(), 1);
+    const Interrupt interrupt;
+    // The system's Python comes first, because it has the system's packages.
+    for (const char* python : {"/usr/bin/python3", "python3"}) {
+        std::vector<std::string> line{python, path};
+        line.insert(line.end(), words.begin(), words.end());
+        const int code = run_program(line, streams);
+        // run_program() ends the command by SIGTERM after any signal.
+        if (code == 128 + SIGTERM && Interrupt::asked()) return Interrupt::exit_code();
+        if (code != not_found) return code;
+    }
+    throw InputError(fmt::format("tandem {} needs python3; install it", name));
+}
+
+std::string file_text(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
 
 } // namespace
 
@@ -33,21 +57,15 @@ std::string external_program(const std::string& name) {
 }
 
 int run_external(const std::string& name, const std::vector<std::string>& words) {
-    const auto path = external_program(name);
-    setenv("TANDEM_PROGRAM", own_path().c_str(), 1);
     // Flush first, so that earlier output precedes the program's. If that fails, nobody can read its output.
-    const ProgramStreams streams{"", flush_output() ? "" : "/dev/null", ""};
-    const Interrupt interrupt;
-    // The system's Python comes first, because it has the system's packages.
-    for (const char* python : {"/usr/bin/python3", "python3"}) {
-        std::vector<std::string> line{python, path};
-        line.insert(line.end(), words.begin(), words.end());
-        const int code = run_program(line, streams);
-        // run_program() ends the command by SIGTERM after any signal.
-        if (code == 128 + SIGTERM && Interrupt::asked()) return Interrupt::exit_code();
-        if (code != not_found) return code;
-    }
-    throw InputError(fmt::format("tandem {} needs python3; install it", name));
+    return run_external_into(name, words, {"", flush_output() ? "" : "/dev/null", ""});
+}
+
+std::string output_of_external(const std::string& name, const std::vector<std::string>& words) {
+    const TemporaryDirectory folder;
+    const auto output = folder.path() + "/output";
+    run_external_into(name, words, {"", output, "/dev/null"});
+    return file_text(output);
 }
 
 } // namespace tandem

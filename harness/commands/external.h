@@ -15,4 +15,7 @@ std::string external_program(const std::string& name);
 /// Throws InputError when the program or Python 3 is missing.
 int run_external(const std::string& name, const std::vector<std::string>& words);
 
+/// Runs it like this, and returns its standard output. Its messages are dropped.
+std::string output_of_external(const std::string& name, const std::vector<std::string>& words);
+
 } // namespace tandem

@@ -19,13 +19,8 @@ Action add_check(CLI::App& app);
 Action add_isolated(CLI::App& app); ///< internal, the child process of --isolate: see isolated_command()
 Action add_accuracy(CLI::App& app);
 Action add_profile(CLI::App& app);
-Action add_compare(CLI::App& app);
 Action add_simulate(CLI::App& app);
 Action add_export(CLI::App& app);
-Action add_convert(CLI::App& app);
-Action add_paper(CLI::App& app);
-Action add_report(CLI::App& app);
-Action add_view(CLI::App& app);
 Action add_devices(CLI::App& app);
 Action add_scenes(CLI::App& app);
 Action add_algorithms(CLI::App& app);

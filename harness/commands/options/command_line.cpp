@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "harness/commands/options/command_line.h"
 
+#include "harness/commands/external.h"
 #include "harness/commands/options/citation.h"
 #include "harness/commands/options/completion.h"
 #include "harness/commands/options/contradictions.h"
+#include "harness/commands/options/external_options.h"
 #include "harness/commands/options/unknown_words.h"
 #include "harness/record/environment.h"
 #include "harness/sampling/ranks/run_on_ranks.h"
@@ -20,11 +22,12 @@ namespace tandem {
 
 namespace {
 
-/// A subcommand: its name and summary in the help, and the function that adds its options.
+/// A subcommand: its name and summary in the help, and the function that adds its options; none for an
+/// external one.
 struct Subcommand {
     const char* name;
     const char* summary;
-    Action (*add)(CLI::App& app);
+    Action (*add)(CLI::App& app) = nullptr;
 };
 
 constexpr Subcommand subcommands[] = {
@@ -33,13 +36,13 @@ constexpr Subcommand subcommands[] = {
     {"accuracy", "error against the exact truth beside speed, over scenes and settings", add_accuracy},
     {"profile", "per kernel: time, registers, occupancy, bytes, operations, share of the ceilings",
      add_profile},
-    {"compare", "which cells changed, by how much, how sure; exit 1 beyond --threshold", add_compare},
+    {"compare", "which cells changed, by how much, how sure; exit 1 beyond --threshold"},
     {"simulate", "move a scene with dynamics; record its frames", add_simulate},
     {"export", "frames as files for ParaView and other viewers, records as a table", add_export},
-    {"convert", "a mesh of any format that meshio reads, as .vtu", add_convert},
-    {"paper", "every table and figure of the paper beside ours, with verdicts", add_paper},
-    {"report", "records, and a scene, as one HTML page with text, tables and charts", add_report},
-    {"view", "a scene in three dimensions as an HTML page", add_view},
+    {"convert", "a mesh of any format that meshio reads, as .vtu"},
+    {"paper", "every table and figure of the paper beside ours, with verdicts"},
+    {"report", "records, and a scene, as one HTML page with text, tables and charts"},
+    {"view", "a scene in three dimensions as an HTML page"},
     {"devices", "available devices, or the reason why there are none", add_devices},
     {"scenes", "built-in scenes with their parameters", add_scenes},
     {"algorithms", "algorithms with their presets and settings; explains the named ones", add_algorithms},
@@ -62,7 +65,7 @@ Actions add_commands(CLI::App& app, const std::function<bool(std::string_view)>&
     Actions actions;
     for (const auto& command : subcommands) {
         auto* subcommand = app.add_subcommand(command.name, command.summary);
-        if (!needed(command.name)) continue;
+        if (command.add == nullptr || !needed(command.name)) continue;
         actions.emplace_back(subcommand, command.add(*subcommand));
         add_version(*subcommand)->group(""); // hidden: only the help of the program shows it
     }
@@ -76,18 +79,35 @@ bool begins_with_command(std::span<const std::string> words) {
            && std::ranges::any_of(subcommands, [&](const auto& each) { return words.front() == each.name; });
 }
 
+bool is_external(const std::string& word) {
+    return std::ranges::any_of(subcommands,
+                               [&](const auto& each) { return each.add == nullptr && word == each.name; });
+}
+
+/// Completes the line; asks an external subcommand in it for its options.
+int complete_line(CLI::App& app, std::span<const std::string> line) {
+    if (const auto name = std::ranges::find_if(line, is_external); name != line.end())
+        add_declared_options(*app.get_subcommand(*name), *name);
+    return complete(app, line);
+}
+
 } // namespace
 
 Action read_command_line(int argc, const char* const* argv) {
+    const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+    if (!words.empty() && is_external(words.front()))
+        return [words] {
+            report_idle_ranks(words.front());
+            return run_external(words.front(), {words.begin() + 1, words.end()});
+        };
     // The actions share ownership of the app, because they read its options later.
     const auto app = std::make_shared<CLI::App>(
         "tandem: measures and checks ways of walking bounding-volume hierarchies in tandem");
-    const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
     const bool needs_all = !begins_with_command(words);
     const auto actions = add_commands(*app, [&](std::string_view name) {
         return needs_all || std::ranges::find(words, name) != words.end();
     });
-    if (asks_for_completion(words)) return [app, words] { return complete(*app, words); };
+    if (asks_for_completion(words)) return [app, words] { return complete_line(*app, words); };
     const auto print = [](const std::string& text) {
         return [text]() -> int {
             put_text(text);

@@ -2,42 +2,29 @@
 #include "harness/commands/options/external_options.h"
 
 #include "harness/commands/external.h"
+#include "base/error.h"
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
+#include <sstream>
 
 namespace tandem {
 
-CLI::Option* add_external_option(CLI::App& app, const std::string& name, const std::string& description) {
-    return app.add_option(name, CLI::callback_t{}, description);
-}
-
-CLI::Option* add_external_flag(CLI::App& app, const std::string& name, const std::string& description) {
-    return app.add_flag(name, description);
-}
-
-std::vector<std::string> given_words(const CLI::App& app) {
-    std::vector<std::string> words;
-    std::vector<std::string> arguments;
-    for (const auto* option : app.get_options([](const CLI::Option* each) { return each->count() > 0; })) {
-        const auto& values = option->results();
-        if (option->get_positional()) {
-            arguments.insert(arguments.end(), values.begin(), values.end());
-            continue;
-        }
-        const auto name = "--" + option->get_lnames().front();
-        const bool is_flag = option->get_items_expected_max() == 0;
-        if (is_flag) words.push_back(name);
-        for (const auto& value : values)
-            if (!is_flag) words.push_back(fmt::format("{}={}", name, value));
+void add_declared_options(CLI::App& app, const std::string& name) {
+    std::istringstream lines;
+    try {
+        lines.str(output_of_external(name, {"--list-options"}));
+    } catch (const InputError&) {
+        return;
     }
-    if (!arguments.empty()) words.emplace_back("--"); // arguments may begin with a dash
-    words.insert(words.end(), arguments.begin(), arguments.end());
-    return words;
-}
-
-Action run_external_action(const CLI::App& app) {
-    return [&app] { return run_external(app.get_name(), given_words(app)); };
+    for (std::string line; std::getline(lines, line);) {
+        const auto blank = line.find(' ');
+        const auto names = line.substr(0, blank);
+        if (names == "-h,--help") continue; // every subcommand has it
+        if (blank == std::string::npos)
+            app.add_flag(names);
+        else
+            app.add_option(names, CLI::callback_t{})->option_text(line.substr(blank + 1));
+    }
 }
 
 } // namespace tandem

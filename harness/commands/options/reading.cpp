@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "harness/commands/options/reading.h"
 
-#include "harness/commands/options/external_options.h"
-
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
@@ -37,13 +35,6 @@ void add_reading_options(CLI::App& app, MeshReading& reading) {
         ->option_text("TOLERANCE");
     app.add_flag("--corners", reading.corners, corners_help);
     app.add_flag("--only-tetrahedra", reading.only_tetrahedra, only_help);
-}
-
-std::vector<CLI::Option*> add_external_reading_options(CLI::App& app) {
-    return {add_external_option(app, "--duplicates", duplicates_help)->option_text(duplicates_choices()),
-            add_external_option(app, "--weld", weld_help)->option_text("TOLERANCE"),
-            add_external_flag(app, "--corners", corners_help),
-            add_external_flag(app, "--only-tetrahedra", only_help)};
 }
 
 } // namespace tandem

@@ -2,33 +2,54 @@
 """tandem compare: which cells changed, by how much and how surely. Exits with 1 if a cell is slower, faster
 or has another answer."""
 
-import argparse
 import contextlib
 import tempfile
 
-from . import check_packages, print_error, run
+from . import Parser, check_packages, check_together, print_error, run, within
 
 FAILED = 3
+SESSIONS = 12  # of each program
 LEVEL, LEVEL_OF_RUNS = 0.05, 0.01  # continuous integration compares builds at every change
 
 
 def _parsed(arguments):
-    parser = argparse.ArgumentParser(prog="tandem compare", description=__doc__)
-    parser.add_argument("old")
-    parser.add_argument("new")
-    parser.add_argument("words", nargs="*")
-    parser.add_argument("--threshold", type=float, help="percent")
-    parser.add_argument("--level", type=float)
-    parser.add_argument("--format", default="text", choices=("text", "json", "markdown"))
-    parser.add_argument("--commit-old", default="")
-    parser.add_argument("--commit-new", default="")
-    parser.add_argument("--strict", action="store_true")
-    parser.add_argument("--run", action="store_true")
-    parser.add_argument("--sessions", type=int, default=12)
-    parser.add_argument("--out")
-    options = parser.parse_args(arguments)
-    if options.level is None:
-        options.level = LEVEL_OF_RUNS if options.run else LEVEL
+    parser = Parser("tandem compare", __doc__)
+    add = parser.add_argument
+    add("old", help="FILE.jsonl of records, or FILE.jsonl@COMMIT for the records of one commit")
+    add("new", help="as OLD; may be the same file with another commit")
+    add("words", nargs="*", help="with --run, behind --: scenes or a plan, and options of 'tandem run'")
+    percent = "least change of a cell that counts, in percent (default: 1 on GPUs, 3 on processors)"
+    add("--threshold", type=within(0, 1e6), metavar="P", help=percent)
+    alarm = f"probability of any false alarm over all cells together (default: {LEVEL}, with --run {LEVEL_OF_RUNS})"
+    add("--level", type=within(1e-9, 0.5), metavar="A", help=alarm)
+    forms = ("text", "json", "markdown")
+    add(
+        "--format",
+        default="text",
+        choices=forms,
+        metavar="|".join(forms),
+        help="format of the output (default: text)",
+    )
+    for side, letter in (("old", "C"), ("new", "D")):
+        of_commit = f"use only the records of {side.upper()} whose commit begins with this text"
+        add(f"--commit-{side}", default="", metavar=letter, help=of_commit)
+    add("--strict", action="store_true", help="exit with 1 also if a cell changes in disturbed rounds only")
+    turns = "OLD and NEW are two builds of this program; measure both by turns and compare: --run OLD NEW -- SCENE ..."
+    add("--run", action="store_true", help=turns)
+    processes = f"with --run: processes of each program (default: {SESSIONS})"
+    add("--sessions", type=within(2, 1000, int), metavar="N", help=processes)
+    kept = "with --run: keep the records in this folder, which must be new or empty"
+    add("--out", metavar="FOLDER", help=kept)
+    end = arguments.index("--") if "--" in arguments else len(arguments)
+    options = parser.read(arguments[:end])
+    options.words += arguments[end + 1 :]
+    check_together(
+        options,
+        [(name, "run") for name in ("words", "sessions", "out")],
+        [(f"commit-{side}", "run") for side in ("old", "new")],
+    )
+    options.level = options.level or (LEVEL_OF_RUNS if options.run else LEVEL)
+    options.sessions = options.sessions or SESSIONS
     return options
 
 
@@ -95,5 +116,4 @@ def _make(options):
 
 
 def main(arguments, program):
-    options = _parsed(arguments)
-    return run(lambda: _make(options))
+    return run(lambda: _make(_parsed(arguments)))

@@ -12,10 +12,10 @@ from . import Parser, check_packages, run
 
 
 def _parsed(arguments):
-    parser = Parser(prog="tandem convert", description=__doc__)
-    parser.add_argument("file")
-    parser.add_argument("--output", required=True, metavar="FILE.vtu")
-    return parser.parse_args(arguments)
+    parser = Parser("tandem convert", __doc__)
+    parser.add_argument("file", help="a mesh file that meshio reads, or a .tet file")
+    parser.add_argument("-o", "--output", required=True, metavar="FILE.vtu", help="the file to write")
+    return parser.read(arguments)
 
 
 def _words(path):

@@ -16,10 +16,10 @@ from . import Parser, run, warn
 
 
 def _parsed(arguments):
-    parser = Parser(prog="tandem export --csv", description=__doc__)
+    parser = Parser("tandem export --csv", __doc__)
     parser.add_argument("--records", required=True, metavar="FILE")
     parser.add_argument("--output", default="", metavar="FILE.csv", help="standard output when left out")
-    return parser.parse_args(arguments)
+    return parser.read(arguments)
 
 
 def _row(record, path, line):

@@ -3,16 +3,16 @@
 records of its folder. Exits with 2 and one error line for bad use and a folder without records, and with 3 if
 a step failed or a file cannot be written."""
 
-import argparse
 import csv
 import pathlib
+import subprocess
 
 from ..csv_fields import fields
-from ..errors import BadUse
+from ..errors import BadUse, OutputError
 from ..files import check_output
 from ..paper import measuring
 from ..text_lines import visible
-from . import check_packages, print_error
+from . import Parser, check_packages, check_together, print_error, run
 
 PACKAGES = ("matplotlib", "pandas", "scipy")
 
@@ -140,41 +140,73 @@ def draw(path):
 
 
 def parsed(arguments):
-    parser = argparse.ArgumentParser(prog="tandem paper", description=__doc__)
-    parser.add_argument("-o", "--output", required=True)
-    parser.add_argument("--device", default="opencl:0")
-    parser.add_argument("--size", default="small")
-    parser.add_argument("--steps", default="")
-    for name in ("again", "measure-only", "draw-only", "dry-run"):
-        parser.add_argument(f"--{name}", action="store_true")
-    return parser.parse_args(arguments)
+    parser = Parser("tandem paper", __doc__)
+    add = parser.add_argument
+    folder = "the folder for tables, figures, records and index.html"
+    add("-o", "--output", required=True, metavar="FOLDER", help=folder)
+    device = "the device to measure on (default: opencl:0)"
+    add("--device", default="opencl:0", metavar="DEVICE", help=device)
+    size = "scenes: small, for a processor (15 minutes on two cores), or full, those of the paper, for a GPU (default: small)"
+    add("--size", default="small", metavar="small|full", help=size)
+    steps = (
+        "only these of the steps that --dry-run lists: FIRST:LAST or N; or tableN, figureN or a name, with the steps "
+        "that make their recordings; several with commas (default: all)"
+    )
+    add("--steps", default="", metavar="STEPS", help=steps)
+    for name, text in (
+        ("again", "measure again what is already done"),
+        ("measure-only", "draw nothing; draw later with --draw-only, on any machine"),
+        ("draw-only", "draw tables, figures and verdicts from the records of the folder; measure nothing"),
+        ("dry-run", "list the steps and their times; measure nothing"),
+    ):
+        add(f"--{name}", action="store_true", help=text)
+    options = parser.read(arguments)
+    check_together(options, (), [("draw-only", name) for name in ("measure-only", "again", "steps")])
+    return options
+
+
+def check_device(program, device):
+    """Raises BadUse unless the program has this device, and it is one."""
+    if device == "all" or any(letter in device for letter in ",+"):
+        raise BadUse(f"--device {device}: the paper's scenes run on one device; name exactly one")
+    words = ["run", "plates", "--frames", "0", "--algorithm", "chunked", "--dry-run", "--device", device]
+    done = subprocess.run([program, *words], capture_output=True, text=True)
+    if done.returncode:
+        raise BadUse(done.stderr.strip().splitlines()[-1].removeprefix("tandem: "))
+
+
+def _make(options, program):
+    if not options.draw_only:
+        check_device(program, options.device)
+    if not options.measure_only and not options.dry_run:
+        # Fails before anything is measured.
+        check_packages("tandem paper", PACKAGES, ", or give --measure-only")
+        check_outputs(options.output)
+    if options.draw_only:
+        return draw(options.output)
+    steps = measuring.steps_of(options.size, options.device)
+    numbers = measuring.chosen(options.steps, steps)
+    folder = measuring.MeasuredFolder(options.output, options.size, options.device, program)
+    if options.dry_run:
+        measuring.list_steps(folder, steps)
+        return 0
+    if options.again:
+        for number in numbers:
+            folder.forget(steps[number])
+    worst = measuring.run_steps(folder, steps, numbers)
+    if options.measure_only or folder.interrupted:
+        return worst
+    return 3 if draw(options.output) else worst
+
+
+def _made(arguments, program):
+    options = parsed(arguments)
+    try:
+        return "", _make(options, program)
+    except OSError as error:
+        raise OutputError(f"{error.filename or options.output}: {error.strerror}") from None
 
 
 def main(arguments, program):
     """`program`: path of tandem, which runs the steps."""
-    options = parsed(arguments)
-    try:
-        if not options.measure_only and not options.dry_run:
-            check_packages(
-                "tandem paper", PACKAGES, ", or give --measure-only"
-            )  # fails before anything is measured
-            check_outputs(options.output)
-        if options.draw_only:
-            return draw(options.output)
-        steps = measuring.steps_of(options.size, options.device)
-        numbers = measuring.chosen(options.steps, steps)
-        folder = measuring.MeasuredFolder(options.output, options.size, options.device, program)
-        if options.dry_run:
-            measuring.list_steps(folder, steps)
-            return 0
-        if options.again:
-            for number in numbers:
-                folder.forget(steps[number])
-        worst = measuring.run_steps(folder, steps, numbers)
-    except BadUse as error:
-        return print_error(error, 2)
-    except OSError as error:
-        return print_error(f"{error.filename or options.output}: {error.strerror}", 3)
-    if options.measure_only or folder.interrupted:
-        return worst
-    return 3 if draw(options.output) else worst
+    return run(lambda: _made(arguments, program))

@@ -1,32 +1,35 @@
 # SPDX-License-Identifier: MIT
 """tandem report: writes records, and optionally a scene, as one page for a browser."""
 
-import argparse
 import datetime
 import subprocess
 
 from ..errors import BadUse
 from ..files import check_output
-from . import check_packages, run, warn
+from . import Parser, check_packages, check_together, run, warn
 
 MAX_BYTES = 7_900_000
 
 
 def _parsed(arguments):
-    parser = argparse.ArgumentParser(prog="tandem report", description=__doc__, allow_abbrev=False)
-    parser.add_argument("files", nargs="+")
-    parser.add_argument("--output", default="report.html")
-    parser.add_argument("--against")
-    parser.add_argument("--sentences", action="store_true")
-    parser.add_argument("--scene")
-    parser.add_argument("--frames")
-    parser.add_argument("--every")
-    for name in ("contacts", "corners", "only-tetrahedra"):
-        parser.add_argument(f"--{name}", action="store_true")
-    for name in ("duplicates", "weld"):
-        parser.add_argument(f"--{name}")
-    parser.add_argument("--device")
-    return parser.parse_args(arguments)
+    from ..report.scene import FLAGS, OPTIONS, add_options
+
+    parser = Parser("tandem report", __doc__)
+    add = parser.add_argument
+    kinds = "records of cells, profiles, simulations or ceilings (.jsonl, .jsonl.xz)"
+    add("files", nargs="+", help=kinds)
+    page = "the HTML file to write (default: report.html)"
+    add("-o", "--output", default="report.html", metavar="FILE", help=page)
+    old = "OLD.jsonl or OLD.jsonl@COMMIT: compare the one FILE with it, as 'tandem compare' does"
+    add("--against", metavar="OLD", help=old)
+    sentences = "also print the page's sentences: the fastest cell of each comparison"
+    add("--sentences", action="store_true", help=sentences)
+    add("--scene", metavar="SCENE", help="also show this scene or recording")
+    add_options(parser)
+    options = parser.read(arguments)
+    names = [name.replace("_", "-") for name in (*OPTIONS, *FLAGS) if hasattr(options, name)]
+    check_together(options, [*((name, "scene") for name in names), ("device", "contacts")])
+    return options
 
 
 def _counted(number, one, more):
@@ -107,5 +110,4 @@ def _make(options, program):
 
 
 def main(arguments, program):
-    options = _parsed(arguments)
-    return run(lambda: _make(options, program))
+    return run(lambda: _make(_parsed(arguments), program))

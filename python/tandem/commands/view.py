@@ -1,25 +1,29 @@
 # SPDX-License-Identifier: MIT
 """tandem view: writes a three-dimensional view of a scene as a page for a browser."""
 
-import argparse
 import re
 
 from ..files import check_output
 from ..report.assembly import open_page, write_page
-from ..report.scene import ExportEnded, shown_scene, words_of
-from . import run
+from ..report.scene import ExportEnded, add_options, shown_scene, words_of
+from . import Parser, check_together, run
 
 
 def _parsed(arguments):
-    parser = argparse.ArgumentParser(prog="tandem view", description=__doc__, allow_abbrev=False)
-    parser.add_argument("scene", nargs="?")
-    for name in ("mesh", "pose"):
-        parser.add_argument(f"--{name}", action="append")
-    for name in ("output", "frames", "every", "device", "duplicates", "weld"):
-        parser.add_argument(f"--{name}")
-    for name in ("contacts", "corners", "only-tetrahedra"):
-        parser.add_argument(f"--{name}", action="store_true")
-    return parser.parse_args(arguments)
+    parser = Parser("tandem view", __doc__)
+    add = parser.add_argument
+    scene = "NAME, NAME:par=value,..., a scene description (.json) or a recording (.frames)"
+    add("scene", nargs="?", help=scene)
+    mesh = "a mesh file of the scene, instead of SCENE; may be repeated"
+    add("--mesh", action="append", metavar="FILE", help=mesh)
+    pose = '"tx ty tz qw qx qy qz", one per --mesh, in order (default: identity)'
+    add("--pose", action="append", metavar="POSE", help=pose)
+    page = "the HTML file to write (default: named after the scene)"
+    add("-o", "--output", metavar="FILE", help=page)
+    add_options(parser)
+    options = parser.read(arguments)
+    check_together(options, [("pose", "mesh"), ("device", "contacts")])
+    return options
 
 
 def _file_name(scene):
@@ -47,5 +51,4 @@ def _make(options, program):
 
 
 def main(arguments, program):
-    options = _parsed(arguments)
-    return run(lambda: _make(options, program))
+    return run(lambda: _make(_parsed(arguments), program))

@@ -10,7 +10,6 @@ Other records of tandem, and cells that failed or are wrong, are left out.
 Exits with 2 and one error line for a file without records and if nothing can be drawn, with 3 if figures
 cannot be written. Needs python3-matplotlib."""
 
-import argparse
 import pathlib
 
 from ..commands import Parser, check_packages, run, warn
@@ -18,14 +17,10 @@ from ..errors import BadUse, OutputError
 
 
 def _parsed(arguments):
-    parser = Parser(
-        prog="python3 -m tandem.error_figures",
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    parser = Parser("python3 -m tandem.error_figures", __doc__)
     parser.add_argument("files", nargs="+", metavar="FILE")
     parser.add_argument("folder", metavar="FOLDER", type=pathlib.Path)
-    return parser.parse_args(arguments)
+    return parser.read(arguments)
 
 
 def draw(files, folder):

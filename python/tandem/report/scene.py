@@ -8,12 +8,31 @@ import pathlib
 import signal
 import subprocess
 
+from ..commands import within
 from ..errors import OutputError
 from ..files import temporary_folder
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 OPTIONS = ("mesh", "pose", "frames", "every", "device", "duplicates", "weld")
 FLAGS = ("contacts", "corners", "only_tetrahedra")
+
+
+def add_options(parser):
+    """Declares the options that words_of() passes to 'tandem export', which checks their values."""
+    add = parser.add_argument
+    add("--frames", metavar="FIRST:LAST", help="both inclusive (default: all)")
+    add(
+        "--every",
+        type=within(1, 1000000, int),
+        metavar="N",
+        help="show every Nth of these frames only (default: 1)",
+    )
+    add("--duplicates", metavar="merge|keep|reject", help="of mesh files, as in 'tandem export'")
+    add("--weld", metavar="TOLERANCE", help="of mesh files, as in 'tandem export'")
+    for name in ("corners", "only-tetrahedra"):
+        add(f"--{name}", action="store_true", help="of mesh files, as in 'tandem export'")
+    add("--contacts", action="store_true", help="show contacts and normals in every frame")
+    add("--device", metavar="DEVICE", help="the device that finds contacts (default: host)")
 
 
 class ExportEnded(Exception):

@@ -12,8 +12,6 @@ balance and the contacts of a batch count as one each. A label has the settings 
 algorithm and preset differ. Failed and wrong cells are shown as such and not compared. Exits with 2 and one
 error line for a file without records, with 3 if standard output cannot be written."""
 
-import argparse
-
 from .. import kinds
 from ..cell import Cell
 from ..commands import Parser, run, warn
@@ -46,13 +44,9 @@ def as_markdown(files):
 
 
 def _make(arguments):
-    parser = Parser(
-        prog="python3 -m tandem.tables",
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    parser = Parser("python3 -m tandem.tables", __doc__)
     parser.add_argument("files", nargs="+", metavar="FILE")
-    return as_markdown(parser.parse_args(arguments).files), 0
+    return as_markdown(parser.read(arguments).files), 0
 
 
 def main(arguments, program=""):
