@@ -26,93 +26,53 @@ Json counters_json(const CellRecord& r) {
     return json;
 }
 
-/// What was walked and found.
-Fields<CellRecord> found_fields() {
-    return {
-        {"walked_tetrahedra",
-         count(),
-         "tetrahedra in the hierarchies, summed over bodies; output=contacts may leave out interior ones; "
-         "records from before it have none and walked all",
-         [](auto& r) { return r.m.walked_tetrahedra; },
-         {.optional = true}},
-        {"body_pairs", counts(), "body pairs of the broad phase, by frame",
-         [](auto& r) { return r.m.body_pairs; }},
-        {"candidate_pairs", counts(), "pairs of tetrahedra whose leaf k-DOPs overlap, by frame",
-         [](auto& r) { return r.m.candidate_pairs; }},
-        {"contacts", counts(), "contacts, by frame", [](auto& r) { return r.m.contacts; }},
-        {"dropped_body_pairs",
-         counts(),
-         "body pairs with overlapping root k-DOPs that broad=sphere_boxes leaves out, by frame, counted with "
-         "the reference; empty without it and for other broad phases; records from before it have none",
-         [](auto& r) { return r.m.dropped_body_pairs; },
-         {.optional = true}},
-        {"dropped_candidate_pairs",
-         counts(),
-         "candidate pairs of the dropped body pairs, by frame; records from before it have none",
-         [](auto& r) { return r.m.dropped_candidate_pairs; },
-         {.optional = true}},
-        {"digest",
-         digest_type(),
-         "of the candidate pairs, summed over frames, compared with a reference or not; a and b are 0 with "
-         "output=count; records from before it have none",
-         [](auto& r) { return digest_fields().write(r.m.agreement.digest); },
-         {.optional = true}},
-        {"contact_digest",
-         digest_type(),
-         "of the contacts, summed over frames; records from before it have none",
-         [](auto& r) { return digest_fields().write(r.m.agreement.contact_digest); },
-         {.optional = true}}};
+Json rebuilds_json(const CellRecord& r) { return r.m.samples.empty() ? 0 : r.m.samples.back().rebuilds; }
+
+const Measurement& measurement_of(const CellRecord& r) { return r.m; }
+
+/// Digests of what was found.
+Fields<CellRecord> found_digests() {
+    return {{"digest",
+             digest_type(),
+             "of the candidate pairs, summed over frames, compared with a reference or not; a and b are 0 "
+             "with output=count",
+             [](auto& r) { return digest_fields().write(r.m.agreement.digest); },
+             {.since = 4}},
+            {"contact_digest",
+             digest_type(),
+             "of the contacts, summed over frames",
+             [](auto& r) { return digest_fields().write(r.m.agreement.contact_digest); },
+             {.since = 4}}};
 }
 
-/// How much work it took.
-Fields<CellRecord> effort_fields() {
-    return {
-        {"counters", map_of(known_count().with("description", "one counter"), "^[a-z][a-z0-9_]*$"),
-         "what the algorithm counts of its own work, over all frames, from a counting build; 'tandem "
-         "algorithms' has the unit and the meaning of each; null where it was not counted (--no-count)",
-         counters_json},
-        {"without_boundary",
-         count(),
-         "candidate pairs without the boundary faces that the contact rule needs, over all frames; rejected "
-         "and undecided_* leave them out; records from before it have none, and their rejected and "
-         "undecided_* include such pairs",
-         [](auto& r) { return r.m.without_boundary; },
-         {.optional = true}},
-        {"rejected", count(), "candidate pairs that were told apart, over all frames",
-         [](auto& r) { return r.m.rejected; }},
-        {"undecided_by_filter", known_count(),
-         "candidate pairs that the certified filter could not decide (decision=recheck, exact), over all "
-         "frames; null in records from before it was counted",
-         [](auto& r) { return r.m.undecided_by_filter; }},
-        {"undecided_by_double", known_count(),
-         "candidate pairs that double could not decide (decision=recheck, fp64, exact), over all frames; "
-         "null in records from before it was counted",
-         [](auto& r) { return r.m.undecided_by_double; }},
-        {"retries", count(),
-         "walks that ran again because a buffer was too small, over the frames of the checking replay",
-         [](auto& r) { return r.m.retries; }},
-        {"rebuilds",
-         count(),
-         "trees that the last sample built because none was kept (leaf_query with tree=scene), over all "
-         "frames and devices; 0 for other walks; records from before it have none, and older ones also count "
-         "lists of pairs that were not kept",
-         [](auto& r) { return r.m.samples.empty() ? 0 : r.m.samples.back().rebuilds; },
-         {.optional = true}},
-        {"batches", nullable(integer_from(0)),
-         "parts that frames ran in, over the frames of the checking replay: as many as frames unless memory "
-         "was short; null in records from before frames could be split",
-         [](auto& r) { return r.m.batches; }},
-        {"submissions",
-         count(),
-         "calls that handed transfers and kernels to the devices, over the frames of the last sample: one a "
-         "command, and one for all that went together (submission=one); stages.*.launches counts kernels; "
-         "records from before it have none",
-         [](auto& r) { return r.m.submissions; },
-         {.optional = true}}};
+/// Counts that are not of the checking replay.
+Fields<CellRecord> other_counts() {
+    return {{"counters", map_of(known_count().with("description", "one counter"), "^[a-z][a-z0-9_]*$"),
+             "what the algorithm counts of its own work, over all frames, from a counting build; 'tandem "
+             "algorithms' has the unit and the meaning of each; null where it was not counted (--no-count)",
+             counters_json},
+            {"rebuilds",
+             count(),
+             "trees that the last sample built because none was kept (leaf_query with tree=scene), over all "
+             "frames and devices; 0 for other walks; older records also count lists of pairs that were not "
+             "kept",
+             rebuilds_json,
+             {.since = 4}},
+            {"submissions",
+             count(),
+             "calls that handed transfers and kernels to the devices, over the frames of the last sample: "
+             "one a command, and one for all that went together (submission=one); stages.*.launches counts "
+             "kernels",
+             [](auto& r) { return r.m.submissions; },
+             {.since = 4}}};
 }
 
 const Fields<CellRecord>& work_fields() {
-    static const auto fields = found_fields().with(effort_fields());
+    static const auto fields = found_counts()
+                                   .of(measurement_of)
+                                   .with(found_digests())
+                                   .with(effort_counts().of(measurement_of))
+                                   .with(other_counts());
     return fields;
 }
 
@@ -132,10 +92,9 @@ const Fields<KernelFacts>& kernel_fields() {
          [](auto& k) { return known_or_null(k.spill_bytes); }},
         {"stack_bytes",
          known_count(),
-         "bytes of a work-item's private arrays in device memory; null when the backend does not tell; "
-         "records from before it have none",
+         "bytes of a work-item's private arrays in device memory; null when the backend does not tell",
          [](auto& k) { return known_or_null(k.stack_bytes); },
-         {.optional = true}}};
+         {.since = 4}}};
     return fields;
 }
 
@@ -186,6 +145,52 @@ const Fields<CellRecord>& agreement_fields() {
 }
 
 } // namespace
+
+const Fields<Measurement>& found_counts() {
+    static const Fields<Measurement> fields{
+        member("walked_tetrahedra", count(),
+               "tetrahedra in the hierarchies, summed over bodies; output=contacts may leave out interior "
+               "ones, and records without it walked all",
+               &Measurement::walked_tetrahedra, {.since = 4}),
+        member("body_pairs", counts(), "body pairs of the broad phase, by frame", &Measurement::body_pairs),
+        member("candidate_pairs", counts(), "pairs of tetrahedra whose leaf k-DOPs overlap, by frame",
+               &Measurement::candidate_pairs),
+        member("contacts", counts(), "contacts, by frame", &Measurement::contacts),
+        member(
+            "dropped_body_pairs", counts(),
+            "body pairs with overlapping root k-DOPs that broad=sphere_boxes leaves out, by frame, counted "
+            "with the reference; empty without it and for other broad phases",
+            &Measurement::dropped_body_pairs, {.since = 4}),
+        member("dropped_candidate_pairs", counts(), "candidate pairs of the dropped body pairs, by frame",
+               &Measurement::dropped_candidate_pairs, {.since = 4})};
+    return fields;
+}
+
+const Fields<Measurement>& effort_counts() {
+    static const Fields<Measurement> fields{
+        member("without_boundary", count(),
+               "candidate pairs without the boundary faces that the contact rule needs, over all frames; "
+               "rejected and undecided_* leave them out, and include them in records without it",
+               &Measurement::without_boundary, {.since = 4}),
+        member("rejected", count(), "candidate pairs that were told apart, over all frames",
+               &Measurement::rejected),
+        member("undecided_by_filter", known_count(),
+               "candidate pairs that the certified filter could not decide (decision=recheck, exact), over "
+               "all frames",
+               &Measurement::undecided_by_filter, {.since = 2}),
+        member(
+            "undecided_by_double", known_count(),
+            "candidate pairs that double could not decide (decision=recheck, fp64, exact), over all frames",
+            &Measurement::undecided_by_double, {.since = 2}),
+        member("retries", count(),
+               "walks that ran again because a buffer was too small, over the frames of the checking replay",
+               &Measurement::retries),
+        member("batches", nullable(integer_from(0)),
+               "parts that frames ran in, over the frames of the checking replay: as many as frames unless "
+               "memory was short",
+               &Measurement::batches, {.since = 2})};
+    return fields;
+}
 
 Fields<CellRecord> answer_fields() {
     return {{"work",

@@ -80,10 +80,10 @@ const Fields<Scene>& scene_fields() {
         {"reading",
          reading_fields().type(
              "how the meshes were read and connected, decided before the first frame; counts "
-             "are sums over bodies; records from before it have none"),
+             "are sums over bodies"),
          "",
          [](auto& s) { return reading_fields().write(s); },
-         {.optional = true}}};
+         {.since = 4}}};
     return fields;
 }
 
@@ -106,10 +106,9 @@ const Fields<RecordedDevice>& device_fields() {
          text(),
          "by what its times in breakdown_ns, device_span_ns, stages and kernel_times were taken: CUPTI ... "
          "activity records (nothing but the commands), CUDA events (with what an event takes, in parentheses "
-         "why not by CUPTI), OpenCL profiling, steady clock; several joined by ; where the rounds differ; "
-         "records from before it have none",
+         "why not by CUPTI), OpenCL profiling, steady clock; several joined by ; where the rounds differ",
          [](auto& d) { return d.clock ? Json(*d.clock) : absent(); },
-         {.optional = true}}};
+         {.since = 4}}};
     return fields;
 }
 
@@ -135,9 +134,11 @@ const Fields<Environment>& environment_fields() {
         {"cores", count(), "host cores; 0 when unknown", &Environment::cores},
         {"memory_bytes", count(), "host memory in bytes", &Environment::memory},
         {"compiler", text(), "compiler of the program", &Environment::compiler},
-        {"sources", nullable(hex()),
-         "digest of the sources of the program and its kernels; null in records from before schema 3",
-         [](auto&) { return sources_digest(); }}};
+        {"sources",
+         nullable(hex()),
+         "digest of the sources of the program and its kernels",
+         [](auto&) { return sources_digest(); },
+         {.since = 3}}};
     return fields;
 }
 

@@ -42,11 +42,9 @@ Fields<AnswerErrors> contact_spreads() {
     auto volume = spread_field("volume_relative",
                                "|hull - exact| / exact: volume of the contact points' convex hull against "
                                "that of the exact intersection, "
-                               "whose vertices the points of every rule are; 1 where the points span none; "
-                               "records from before it have "
-                               "none",
+                               "whose vertices the points of every rule are; 1 where the points span none",
                                &ContactErrors::volume_relative);
-    volume.occurrence.optional = true;
+    volume.occurrence.since = 4;
     return {spread_field("depth_relative",
                          "|deepest - exact| / exact, the exact depth that of the least translation",
                          &ContactErrors::depth_relative),
@@ -226,7 +224,7 @@ auto truth_type() {
         "against the exact truth, every pair of every frame decided, by the vertices that setting "
         "placement names (rounded: the cell's, moved in its precision; exact: the scene's, moved "
         "without rounding; decisions and contacts were judged by the cell's before there was a "
-        "setting origin); null when not asked for; records from before it have none"));
+        "setting origin); null when not asked for"));
 }
 
 const Fields<CellRecord>& one_error() {
@@ -237,40 +235,39 @@ const Fields<CellRecord>& one_error() {
         {"deep_contact",
          nullable(deep_contact_fields().type("deepest contact of the first frame with contacts deeper than "
                                              "the smaller body is long, with a rule "
-                                             "that needs boundary faces of both; null: none, or unchecked; "
-                                             "records from before it have none")),
+                                             "that needs boundary faces of both; null: none, or unchecked")),
          "",
          [](auto& r) { return r.m.deep_contact ? deep_contact_fields().write(*r.m.deep_contact) : Json(); },
-         {.optional = true}},
+         {.since = 4}},
         {"flattened",
          count(),
          "tetrahedra with volume that have none by the vertices as the device has them, in the first "
-         "frame; 0 when answers were not checked; records from before it have none",
+         "frame; 0 when answers were not checked",
          [](auto& r) { return r.m.flattened.tetrahedra; },
-         {.optional = true, .column = "flattened"}},
+         {.since = 4, .column = "flattened"}},
         {"inputs",
          input_fields().type(
              "flawed tetrahedra of the frames as they were given: of exactly zero volume, or with "
-             "a coordinate that is not finite; records from before it have none"),
+             "a coordinate that is not finite"),
          "",
          [](auto& r) { return input_fields().write(r.range.flaws()); },
-         {.optional = true}},
+         {.since = 4}},
         {"truth",
          truth_type(),
          "",
          [](auto& r) { return r.m.errors ? truth_fields().write(*r.m.errors) : Json(); },
-         {.optional = true}},
+         {.since = 4}},
         {"rounding",
          nullable(rounding_fields().type(
              "against the input: the scene's vertices in double, moved by the poses without rounding, every "
              "pair of every frame decided. What the rounding of vertices to the cell's changed; null without "
-             "a truth, and with motion=linear; records from before it have none")),
+             "a truth, and with motion=linear")),
          "",
          [](auto& r) {
              return r.m.errors && r.m.errors->rounding ? rounding_fields().write(*r.m.errors->rounding)
                                                        : Json();
          },
-         {.optional = true}}};
+         {.since = 4}}};
     return fields;
 }
 

@@ -110,7 +110,14 @@ void ObjectType::add(const std::string& name, const Type& type, const std::strin
     auto& properties = type_.schema["properties"];
     if (properties.contains(name)) throw std::logic_error(fmt::format("two fields {} of an object", name));
     properties[name] = meaning.empty() ? type.schema : type.with("description", meaning).schema;
-    if (!occurrence.optional) type_.schema["required"].push_back(name);
+    const bool is_newest = occurrence.since >= record_schema;
+    if (occurrence.since > 0) {
+        const auto before = is_newest ? "records from before it have none"
+                                      : fmt::format("null or left out before schema {}", occurrence.since);
+        auto& description = properties[name]["description"];
+        description = fmt::format("{}; {}", description.get<std::string>(), before);
+    }
+    if (!occurrence.optional && !is_newest) type_.schema["required"].push_back(name);
     add_definitions(type_.definitions, type.definitions);
     if (!occurrence.column.empty()) type_.columns.push_back({occurrence.column, {name}, column_type(type)});
     for (auto column : type.columns) {

@@ -10,6 +10,13 @@
 #include <string>
 #include <vector>
 
+namespace tandem {
+
+/// The version of results/record.schema.json.
+inline constexpr int record_schema = 4;
+
+} // namespace tandem
+
 namespace tandem::record_parts {
 
 using Json = nlohmann::ordered_json;
@@ -52,7 +59,8 @@ Type definition(const std::string& name, const Type& type);
 
 /// How a field occurs.
 struct Occurrence {
-    bool optional = false;   ///< some records lack it, such as older ones
+    bool optional = false; ///< some records lack it
+    int since = 0; ///< first schema with it: records of older ones, and older ones of the newest, lack it
     std::string column = {}; ///< the table of cells has it as this column
 };
 
@@ -64,14 +72,42 @@ Json known_or_null(const std::string& text);
 Json known_or_null(std::int64_t value);
 
 /// A field of an object that is made from a `From`. `meaning` is empty where that of the type is enough.
+/// `take` sets the value again; empty where no one reads it back.
 template<class From>
 struct Field {
+    using Value = std::function<Json(const From&)>;
+    using Take = std::function<void(From&, const Json&)>;
+
+    Field(std::string called, Type of, std::string meant, Value made, Occurrence occurs = {}, Take taken = {})
+        : name(std::move(called)),
+          type(std::move(of)),
+          meaning(std::move(meant)),
+          value(std::move(made)),
+          occurrence(std::move(occurs)),
+          take(std::move(taken)) {}
+
     std::string name;
     Type type;
     std::string meaning;
-    std::function<Json(const From&)> value;
-    Occurrence occurrence = {};
+    Value value;
+    Occurrence occurrence;
+    Take take;
 };
+
+/// A field that is a member, which Fields::take() can read.
+template<class From, class Value>
+Field<From> member(const std::string& name, const Type& type, const std::string& meaning, Value From::*at,
+                   const Occurrence& occurrence = {}) {
+    return {name,       type,
+            meaning,    [at](const From& from) { return Json(from.*at); },
+            occurrence, [at](From& from, const Json& json) { json.get_to(from.*at); }};
+}
+
+/// A member that another process or run needs and no record has.
+template<class From, class Value>
+Field<From> member(const std::string& name, Value From::*at) {
+    return member(name, Type{}, "", at);
+}
 
 /// The type of an object, field by field.
 class ObjectType {
@@ -105,6 +141,22 @@ public:
         for (const auto& field : fields_)
             if (auto value = field.value(from); !value.is_discarded()) json[field.name] = std::move(value);
         return json;
+    }
+
+    /// Sets the members that write() wrote, all of which are there. Throws nlohmann::json::exception.
+    void take(From& from, const Json& json) const {
+        for (const auto& field : fields_) field.take(from, json.at(field.name));
+    }
+
+    /// The same fields of an object that has a `From`, which `part` returns.
+    template<class Whole>
+    Fields<Whole> of(const From& (*part)(const Whole&)) const {
+        std::vector<Field<Whole>> fields;
+        for (const auto& field : fields_)
+            fields.push_back({field.name, field.type, field.meaning,
+                              [value = field.value, part](const Whole& whole) { return value(part(whole)); },
+                              field.occurrence});
+        return Fields<Whole>(std::move(fields));
     }
 
     /// An object with these fields and no others.

@@ -23,7 +23,17 @@ struct adl_serializer<std::optional<T>> {
 
 } // namespace nlohmann
 
-/// Defines to_json and from_json of a structure. List all fields in order: a missing field does not compile.
+/// Defines to_json and from_json of a structure, for any kind of nlohmann::basic_json. List all fields in
+/// order: a missing field does not compile.
 #define TANDEM_FIELDS(Type, ...)                                                                             \
-    NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Type, __VA_ARGS__)                                                    \
+    template<class Json>                                                                                     \
+    requires nlohmann::detail::is_basic_json<Json>::value void to_json(Json& nlohmann_json_j,                \
+                                                                       const Type& nlohmann_json_t) {        \
+        NLOHMANN_JSON_EXPAND(NLOHMANN_JSON_PASTE(NLOHMANN_JSON_TO, __VA_ARGS__))                             \
+    }                                                                                                        \
+    template<class Json>                                                                                     \
+    requires nlohmann::detail::is_basic_json<Json>::value void from_json(const Json& nlohmann_json_j,        \
+                                                                         Type& nlohmann_json_t) {            \
+        NLOHMANN_JSON_EXPAND(NLOHMANN_JSON_PASTE(NLOHMANN_JSON_FROM, __VA_ARGS__))                           \
+    }                                                                                                        \
     inline void fields_of(const Type& value) { [[maybe_unused]] const auto& [__VA_ARGS__] = value; }

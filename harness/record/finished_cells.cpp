@@ -2,6 +2,7 @@
 #include "harness/record/finished_cells.h"
 
 #include "harness/record/environment.h"
+#include "harness/record/field.h"
 #include "harness/plans/key.h"
 #include "harness/record/record.h"
 #include "base/error.h"

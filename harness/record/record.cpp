@@ -124,9 +124,9 @@ Fields<CellRecord> subject_fields() {
             {"ranks",
              nullable(integer_from(2)),
              "ranks of a job that shared the frames, started by a launcher of MPI, each with one of devices, "
-             "in their order; null where one process did them; records from before it have none",
+             "in their order; null where one process did them",
              [](auto& r) { return r.cell.team != nullptr ? Json(r.cell.team->devices().size()) : Json(); },
-             {.optional = true}}};
+             {.since = 4}}};
 }
 
 const Fields<CellRecord>& record_fields() {

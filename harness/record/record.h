@@ -7,9 +7,6 @@
 
 namespace tandem {
 
-/// The version of results/record.schema.json.
-inline constexpr int record_schema = 4;
-
 /// One measured cell as the JSON object of results/record.schema.json. A failed cell has only what was
 /// measured before the failure.
 nlohmann::ordered_json make_record(const Cell& cell, const Scene& scene, const FrameRange& range,

@@ -51,26 +51,32 @@ Json unless_repeated(const CellRecord& r, const Value& value) {
 
 /// What was asked for.
 Fields<CellRecord> request_fields() {
-    return {
-        {"cells", nullable(integer_from(1)),
-         "cells of its group, which took turns in every round; null in records from before there were rounds",
-         [](auto& r) { return r.sampling.cells; }},
-        {"seed", known_count(), "of the order of cells in each round; null in records from before",
-         [](auto& r) { return r.sampling.seed; }},
-        {"repeat", known_count(), "samples that were asked for; null where noise and seconds decide",
-         [](auto& r) { return r.sampling.criterion.repeat; }},
-        {"noise", nullable(number_above(0)),
-         "width of the 95 % interval of the median, relative to it, that was asked for; null with repeat",
-         [](auto& r) { return unless_repeated(r, noise_of(r.cell.devices, r.sampling.criterion)); }},
-        {"seconds", nullable(number_above(0)), "after which ten rounds suffice; null with repeat",
-         [](auto& r) { return unless_repeated(r, r.sampling.criterion.seconds); }}};
+    return {{"cells",
+             nullable(integer_from(1)),
+             "cells of its group, which took turns in every round",
+             [](auto& r) { return r.sampling.cells; },
+             {.since = 3}},
+            {"seed",
+             known_count(),
+             "of the order of cells in each round",
+             [](auto& r) { return r.sampling.seed; },
+             {.since = 3}},
+            {"repeat", known_count(), "samples that were asked for; null where noise and seconds decide",
+             [](auto& r) { return r.sampling.criterion.repeat; }},
+            {"noise", nullable(number_above(0)),
+             "width of the 95 % interval of the median, relative to it, that was asked for; null with repeat",
+             [](auto& r) { return unless_repeated(r, noise_of(r.cell.devices, r.sampling.criterion)); }},
+            {"seconds", nullable(number_above(0)), "after which ten rounds suffice; null with repeat",
+             [](auto& r) { return unless_repeated(r, r.sampling.criterion.seconds); }}};
 }
 
 /// How it ended, and how good the samples are.
 Fields<CellRecord> quality_fields() {
-    return {{"spent_seconds", nullable(number_from(0)),
-             "that its rounds took, preparations included; null in records from before",
-             [](auto& r) { return static_cast<double>(r.outcome.sampler->state().spent_ns) * 1e-9; }},
+    return {{"spent_seconds",
+             nullable(number_from(0)),
+             "that its rounds took, preparations included",
+             [](auto& r) { return static_cast<double>(r.outcome.sampler->state().spent_ns) * 1e-9; },
+             {.since = 3}},
             {"converged",
              nullable(boolean()),
              "the interval became as narrow as that; null with repeat",
@@ -115,9 +121,10 @@ Fields<CellRecord> sampling_fields() {
             {"conditions",
              nullable(round_condition_fields().type(
                  "what the machine was like before and after the samples of each round; "
-                 "null without samples and in records from before schema 3")),
+                 "null without samples")),
              "",
-             [](auto& r) { return r.m.conditions.empty() ? Json() : round_condition_fields().write(r.m); }}};
+             [](auto& r) { return r.m.conditions.empty() ? Json() : round_condition_fields().write(r.m); },
+             {.since = 3}}};
 }
 
 } // namespace tandem::record_parts

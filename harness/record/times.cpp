@@ -265,21 +265,22 @@ Fields<CellRecord> time_fields() {
         {{"stages",
           stages_fields().type("what those replays spent, by stage; a stage that did not occur is left out"),
           "", [](auto& r) { return r.m.breakdowns.empty() ? Json::object() : stages_fields().write(r.m); }},
-         {"kernel_times", map_of(kernel_time_fields().type("one kernel"), "^[a-z][a-z0-9_]*$"),
-          "what those replays spent, by entry point of kernels; records from before schema 3 have none",
+         {"kernel_times",
+          map_of(kernel_time_fields().type("one kernel"), "^[a-z][a-z0-9_]*$"),
+          "what those replays spent, by entry point of kernels",
           [](auto& r) {
               return named_json(r.m, kernel_time_fields(), &InstrumentedReplay::kernels,
                                 &KernelSample::device_ns);
-          }},
+          },
+          {.since = 3}},
          {"host_work",
           map_of(host_work_fields().type("one kind of work"), "^[a-z][a-z ]*$"),
-          "what the host did by itself in those replays, by name; each is within a stage as well; records "
-          "from before it have none",
+          "what the host did by itself in those replays, by name; each is within a stage as well",
           [](auto& r) {
               return named_json(r.m, host_work_fields(), &InstrumentedReplay::host_work,
                                 &HostWorkSample::host_ns);
           },
-          {.optional = true}}});
+          {.since = 4}}});
 }
 
 } // namespace tandem::record_parts

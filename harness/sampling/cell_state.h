@@ -22,13 +22,13 @@ struct CellState {
 };
 
 /// The results of checking and counting, without rounds.
-nlohmann::json checked_json(const CellState& state);
+nlohmann::ordered_json checked_json(const CellState& state);
 /// The rounds from number `first` on, and the other values that rounds change.
-nlohmann::json rounds_json(const CellState& state, std::uint32_t first);
+nlohmann::ordered_json rounds_json(const CellState& state, std::uint32_t first);
 
 /// Read the output of the functions above for the same cell, with every number exact. They throw
 /// nlohmann::json::exception or InputError for any other input.
-void take_checked(CellState& state, const nlohmann::json& json, const Cell& cell);
-void take_rounds(CellState& state, const nlohmann::json& json);
+void take_checked(CellState& state, const nlohmann::ordered_json& json, const Cell& cell);
+void take_rounds(CellState& state, const nlohmann::ordered_json& json);
 
 } // namespace tandem

@@ -2,6 +2,7 @@
 // Converts states of cells to JSON: lists the fields of every structure in a state.
 #include "harness/sampling/cell_state.h"
 
+#include "harness/record/parts.h"
 #include "harness/verify/accuracy/answer_errors_json.h"
 
 namespace tandem {
@@ -26,19 +27,20 @@ TANDEM_FIELDS(Agreement, frames, missing, extra, contact_frames_wrong, digest, c
 
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::ordered_json;
+using record_parts::Fields, record_parts::member;
 
 /// The items (replays or conditions) of round `first` and later rounds.
 template<class Item>
-json from_round(const std::vector<Item>& items, std::uint32_t first) {
-    auto list = json::array();
+Json from_round(const std::vector<Item>& items, std::uint32_t first) {
+    auto list = Json::array();
     for (const auto& item : items)
         if (item.round >= first) list.push_back(item);
     return list;
 }
 
 template<class Item>
-void append(std::vector<Item>& items, const json& more) {
+void append(std::vector<Item>& items, const Json& more) {
     for (const auto& item : more) items.push_back(item.get<Item>());
 }
 
@@ -47,7 +49,7 @@ std::map<std::string, std::uint64_t> named(const std::map<std::string_view, std:
 }
 
 /// Uses the algorithm's own names as keys: their storage lives as long as the algorithm.
-std::map<std::string_view, std::uint64_t> counted(const json& work, const Traversal& algorithm) {
+std::map<std::string_view, std::uint64_t> counted(const Json& work, const Traversal& algorithm) {
     std::map<std::string_view, std::uint64_t> counts;
     for (const auto& counter : algorithm.counters())
         if (const auto found = work.find(counter.name); found != work.end())
@@ -55,88 +57,76 @@ std::map<std::string_view, std::uint64_t> counted(const json& work, const Traver
     return counts;
 }
 
-/// Calls `each(name, value)` for every field that checking and counting set. The caller handles settings and
-/// counts, whose names depend on the algorithm.
-template<class State, class Each>
-void each_checked(State& state, const Each& each) {
-    auto& m = state.measurement;
-    each("body_pairs", m.body_pairs);
-    each("candidate_pairs", m.candidate_pairs);
-    each("contacts", m.contacts);
-    each("dropped_body_pairs", m.dropped_body_pairs);
-    each("dropped_candidate_pairs", m.dropped_candidate_pairs);
-    each("walked_tetrahedra", m.walked_tetrahedra);
-    each("degenerate", m.degenerate);
-    each("without_boundary", m.without_boundary);
-    each("rejected", m.rejected);
-    each("undecided_by_filter", m.undecided_by_filter);
-    each("undecided_by_double", m.undecided_by_double);
-    each("retries", m.retries);
-    each("batches", m.batches);
-    each("errors", m.errors);
-    each("deep_contact", m.deep_contact);
-    each("flattened", m.flattened);
-    each("kernels", m.kernels);
-    each("first_prepare_ns", m.prepare_ns);
-    each("device_bytes", m.device_bytes);
-    each("digests", state.digests);
-    each("counted", state.counted);
+/// What checking and counting set, other than settings and counts whose names depend on the algorithm.
+const Fields<Measurement>& checked_fields() {
+    static const auto fields =
+        record_parts::found_counts()
+            .with(record_parts::effort_counts())
+            .with({member("degenerate", &Measurement::degenerate), member("errors", &Measurement::errors),
+                   member("deep_contact", &Measurement::deep_contact),
+                   member("flattened", &Measurement::flattened), member("kernels", &Measurement::kernels),
+                   member("first_prepare_ns", &Measurement::prepare_ns),
+                   member("device_bytes", &Measurement::device_bytes)});
+    return fields;
 }
 
-/// Calls `each(name, value)` for every field that a round changes, other than the lists that it extends.
-template<class State, class Each>
-void each_of_round(State& state, const Each& each) {
-    auto& m = state.measurement;
-    each("continued", m.continued);
-    each("submissions", m.submissions);
-    each("shared", m.shared);
-    each("agreement", m.agreement);
-    each("replay_ns", state.replay_ns);
-    each("prepare_ns", state.prepare_ns);
-    each("spent_ns", state.spent_ns);
-    each("rounds", state.rounds);
+const Fields<CellState>& checked_state_fields() {
+    static const Fields<CellState> fields{member("digests", &CellState::digests),
+                                          member("counted", &CellState::counted)};
+    return fields;
 }
 
-auto write_to(json& to) {
-    return [&to](const char* name, const auto& value) { to[name] = value; };
+/// What a round changes, other than the lists that it extends.
+const Fields<Measurement>& round_fields() {
+    static const Fields<Measurement> fields{
+        member("continued", &Measurement::continued), member("submissions", &Measurement::submissions),
+        member("shared", &Measurement::shared), member("agreement", &Measurement::agreement)};
+    return fields;
 }
 
-auto read_from(const json& from) {
-    return [&from](const char* name, auto& value) { from.at(name).get_to(value); };
+const Fields<CellState>& round_state_fields() {
+    static const Fields<CellState> fields{
+        member("replay_ns", &CellState::replay_ns), member("prepare_ns", &CellState::prepare_ns),
+        member("spent_ns", &CellState::spent_ns), member("rounds", &CellState::rounds)};
+    return fields;
 }
 
 } // namespace
 
-json checked_json(const CellState& state) {
+Json checked_json(const CellState& state) {
     const auto& m = state.measurement;
-    json to{{"settings", m.settings.texts()}, {"work", named(m.work)}};
-    each_checked(state, write_to(to));
+    Json to{{"settings", m.settings.texts()}, {"work", named(m.work)}};
+    to.update(checked_fields().write(m));
+    to.update(checked_state_fields().write(state));
     return to;
 }
 
-json rounds_json(const CellState& state, std::uint32_t first) {
+Json rounds_json(const CellState& state, std::uint32_t first) {
     const auto& m = state.measurement;
-    json to{{"samples", from_round(m.samples, first)},
+    Json to{{"samples", from_round(m.samples, first)},
             {"breakdowns", from_round(m.breakdowns, first)},
             {"conditions", from_round(m.conditions, first)}};
-    each_of_round(state, write_to(to));
+    to.update(round_fields().write(m));
+    to.update(round_state_fields().write(state));
     return to;
 }
 
-void take_checked(CellState& state, const json& from, const Cell& cell) {
+void take_checked(CellState& state, const Json& from, const Cell& cell) {
     auto& m = state.measurement;
     m.settings = resolve(cell.algorithm->parameters(), preset(*cell.algorithm, cell.preset).values,
                          from.at("settings").get<SettingTexts>(), cell.algorithm->name());
     m.work = counted(from.at("work"), *cell.algorithm);
-    each_checked(state, read_from(from));
+    checked_fields().take(m, from);
+    checked_state_fields().take(state, from);
 }
 
-void take_rounds(CellState& state, const json& from) {
+void take_rounds(CellState& state, const Json& from) {
     auto& m = state.measurement;
     append(m.samples, from.at("samples"));
     append(m.breakdowns, from.at("breakdowns"));
     append(m.conditions, from.at("conditions"));
-    each_of_round(state, read_from(from));
+    round_fields().take(m, from);
+    round_state_fields().take(state, from);
 }
 
 } // namespace tandem

@@ -56,6 +56,26 @@ TEST(RecordFields, SchemaHasTypesMeaningsAndRequiredFields) {
     EXPECT_EQ(type.definitions.dump(), R"({"known":{"type":["integer","null"],"minimum":0}})");
 }
 
+TEST(RecordFields, FieldsSinceTheNewestSchemaAreOptional) {
+    const auto value = [](auto&) { return Json(); };
+    const Fields<Sphere> fields{
+        {"old", boolean(), "a", value, {.since = record_schema - 1}},
+        {"new", boolean().with("description", "b"), "", value, {.since = record_schema}}};
+    const auto schema = fields.type("").schema;
+    EXPECT_EQ(schema["required"], Json{"old"});
+    EXPECT_EQ(schema["properties"]["old"]["description"], "a; null or left out before schema 3");
+    EXPECT_EQ(schema["properties"]["new"]["description"], "b; records from before it have none");
+}
+
+TEST(RecordFields, MembersAreReadBack) {
+    const Fields<Sphere> fields{member("name", &Sphere::name), member("radius", &Sphere::radius)};
+    Sphere read;
+    fields.take(read, fields.write({"a", 2.5}));
+    EXPECT_EQ(read.name, "a");
+    EXPECT_EQ(read.radius, 2.5);
+    EXPECT_THROW(fields.take(read, {{"name", "b"}}), nlohmann::json::exception);
+}
+
 TEST(RecordFields, ColumnsHavePathsAndTypes) {
     const Fields<Sphere> outer{
         {"body", nullable(sphere_fields().type("")), "", [](auto&) { return Json(); }},

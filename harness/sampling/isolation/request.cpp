@@ -55,7 +55,7 @@ nlohmann::json request_json(const RunOptions& options, const CellSampler& sample
          {"samples", work.samples},
          {"check", work.check.check},
          {"count", work.check.count_work},
-         {"checked", state.is_checked() ? checked_json(state) : nlohmann::json()},
+         {"checked", state.is_checked() ? checked_json(state) : nlohmann::ordered_json()},
          {"rounds", rounds_json(state, state.rounds)}}); // an empty list, with the number of rounds
     return request;
 }

@@ -51,7 +51,8 @@ json answer_to(const json& message) {
     LocalSampler sampler(job.cells.front(), job.scene, job.range, references, std::move(state));
     json answer = json::object();
     work(sampler, request.work, answer);
-    answer["checked"] = sampler.state().is_checked() ? checked_json(sampler.state()) : json();
+    answer["checked"] =
+        sampler.state().is_checked() ? checked_json(sampler.state()) : nlohmann::ordered_json();
     answer["rounds"] = rounds_json(sampler.state(), first);
     return answer;
 }
