@@ -2,9 +2,10 @@
 """tandem for Python: finds collisions of tetrahedral meshes on any device, and reads records of measurements
 as pandas frames.
 
-    import tandem collider = tandem.Collider(["a.msh", "b.msh"], algorithm="tiled", device="host", k=18) pairs
-    = collider.pairs([[0, 0, 0, 1, 0, 0, 0], [1, 0, 0, 1, 0, 0, 0]])   # (n, 4): body, tetrahedron, body,
-    tetrahedron
+    import tandem
+
+    collider = tandem.Collider(["a.msh", "b.msh"], algorithm="tiled", device="host", k=18)
+    pairs = collider.pairs([[0, 0, 0, 1, 0, 0, 0], [1, 0, 0, 1, 0, 0, 0]])  # (n, 4): body, tetrahedron, body, tetrahedron
 
     records = tandem.read("run.jsonl")
     records.cells[["algorithm", "set_k", "ms", "ms_low", "ms_high"]]
@@ -21,7 +22,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ._core import DeviceError, Mesh, OutOfMemory, Scene, algorithms, devices
-    from .collider import Answer, Collider, Contacts, Digest, Trial
+    from .answers import Answer, Contacts, Digest
+    from .collider import Collider, Trial
     from .comparison import Comparison, compare
     from .lines import RecordError
     from .frames import write_frames
@@ -31,7 +33,8 @@ if TYPE_CHECKING:
 
 _MODULES = {
     "_core": ("DeviceError", "Mesh", "OutOfMemory", "Scene", "algorithms", "devices"),
-    "collider": ("Answer", "Collider", "Contacts", "Digest", "Trial"),
+    "answers": ("Answer", "Contacts", "Digest"),
+    "collider": ("Collider", "Trial"),
     "comparison": ("Comparison", "compare"),
     "frames": ("write_frames",),
     "lines": ("RecordError",),
@@ -41,7 +44,7 @@ _MODULES = {
 }
 _MODULE_OF = {name: module for module, names in _MODULES.items() for name in names}
 
-_NEED_COMPILED = ("_core", "collider", "frames", "meshes")
+_NEED_COMPILED = ("_core", "answers", "collider", "frames", "meshes")
 _COMPILED = importlib.util.find_spec(f"{__name__}._core") is not None
 
 __all__ = sorted(name for name, module in _MODULE_OF.items() if _COMPILED or module not in _NEED_COMPILED)

@@ -56,7 +56,20 @@ def flags_of(deformable, bodies):
     return flags
 
 
-def bits_of_bodies(lists, what, default, bodies):
+def meshes_of_bodies(bodies, meshes):
+    """The number of each body's mesh; None: each mesh is a body."""
+    if bodies is None:
+        return list(range(meshes))
+    return [number_of(value, f"bodies[{i}]") for i, value in enumerate(list_of(bodies, "bodies"))]
+
+
+def filters_of(body_groups, meets, bodies):
+    """The bits of its groups, and of those that it meets, for each body."""
+    groups = _bits_of_bodies(body_groups, "body_groups", 1, bodies)
+    return list(zip(groups, _bits_of_bodies(meets, "meets", 2**32 - 1, bodies)))
+
+
+def _bits_of_bodies(lists, what, default, bodies):
     """The bits of a list of groups for each body; `default` for None."""
     if lists is None:
         return [default] * bodies

@@ -8,31 +8,22 @@ from typing import Any, Iterable, Mapping, NamedTuple, Sequence
 import numpy
 
 from . import _core
-from .arguments import bits_of_bodies, body_pairs_of, flags_of, list_of, lists_of, number_of, text_of
+from .answers import Answer, Contacts, Digest
+from .arguments import (
+    body_pairs_of,
+    filters_of,
+    flags_of,
+    list_of,
+    lists_of,
+    meshes_of_bodies,
+    number_of,
+    text_of,
+)
 from .arrays import stream_address
 from .changes import changes_of
 from .meshes import mesh_of
 from .telling import warn
 from .worlds import Numbering
-
-
-class Digest(NamedTuple):
-    """Order-free digest of a set, equal on every device: its count and two wrapping 64-bit sums of a mix of
-    its elements."""
-
-    count: int
-    a: int
-    b: int
-
-
-class Contacts(NamedTuple):
-    """Contacts of a frame, sorted by pair and feature. The columns are views of one array of records."""
-
-    pairs: numpy.ndarray  #: (n, 4) int32: body a, tetrahedron a, body b, tetrahedron b; a before b. With worlds (n, 5), the world first
-    features: numpy.ndarray  #: (n,) uint32: number of the contact within its pair (algorithms/narrow_phase)
-    points: numpy.ndarray  #: (n, 3) float64: world coordinates, in the meshes' unit
-    normals: numpy.ndarray  #: (n, 3) float64: unit vectors that point out of body a
-    depths: numpy.ndarray  #: (n,) float64: in the meshes' unit, < 0 inside
 
 
 class Trial(NamedTuple):
@@ -43,94 +34,19 @@ class Trial(NamedTuple):
     seconds: float  #: median time of a frame
 
 
-class Answer:
-    """Result of one run. Later runs of the collider do not change it. It keeps the collider's memory until it
-    is deleted."""
+def _check_names(names):
+    for what, text in names.items():
+        if not isinstance(text, str):
+            raise TypeError(f"{what}: type {type(text).__name__}; expected a name")
 
-    __slots__ = ("_core", "_numbering", "__weakref__")
 
-    def __init__(self, core: _core.Answer, numbering: Numbering | None = None) -> None:
-        self._core, self._numbering = core, numbering or Numbering()
-
-    @property
-    def count(self) -> int:
-        """Number of candidate pairs."""
-        return self._core.count
-
-    @property
-    def contact_count(self) -> int:
-        """Number of contacts."""
-        return self._core.contact_count
-
-    @property
-    def body_pairs(self) -> int:
-        """Number of body pairs whose volumes may overlap."""
-        return self._core.body_pairs
-
-    @property
-    def degenerate(self) -> int:
-        """Number of pairs without contacts because a tetrahedron has no volume."""
-        return self._core.degenerate
-
-    @property
-    def seconds(self) -> float:
-        """Time of the frame, from its poses to known counts, as the program measures it. Excludes the
-        conversion of arguments."""
-        return self._core.seconds
-
-    @property
-    def retries(self) -> int:
-        """Number of walks that ran again because a buffer was too small."""
-        return self._core.retries
-
-    @property
-    def batches(self) -> int:
-        """Number of parts into which the frame was split for lack of memory; 1: not split."""
-        return self._core.batches
-
-    def digest(self) -> Digest:
-        """Digest of the pairs, computed on the device without a download of the pairs."""
-        return Digest(*self._core.digest())
-
-    def contact_digest(self) -> Digest:
-        """Digest of the contacts, sensitive to every bit, computed on the device."""
-        return Digest(*self._core.contact_digest())
-
-    def pairs(self, on_device: bool = False) -> Any:
-        """Candidate pairs: rows body a, tetrahedron a, body b, tetrahedron b, numbered from 0 in the order of
-        the input, body a < body b. In pairs of one body (self_collision), tetrahedron a < tetrahedron b.
-
-        Returns an (n, 4) int32 NumPy array, sorted by its columns. With `worlds` it is (n, 5): the number of
-        the world comes first, and bodies are numbered within it; only rows `on_device` have 4 columns there
-        too, with body numbers world * bodies + body. With `on_device`, returns an object with __dlpack__ over
-        (n, 4) int32 in memory of the device, in the same order, for which the first call sorts them there.
-        torch.from_dlpack, cupy.from_dlpack and (device host) numpy.from_dlpack read it without a copy. Every
-        call returns the same memory. The rows are complete when the call returns, so that any stream may read
-        them. The memory lives as long as an array over it. These libraries do not support OpenCL memory, for
-        which `on_device` raises ValueError."""
-        return self._core.pairs_on_device() if on_device else self._numbering.rows_of(self._core.pairs())
-
-    def meeting(self) -> numpy.ndarray:
-        """Those of pairs() whose tetrahedra meet: rows of the same columns, sorted. Candidate pairs have
-        overlapping bounds, these have a common point of the closed tetrahedra. The decision is exact for the
-        vertices that the device has: moved and rounded in the collider's precision. It takes no contact rule
-        and no boundary faces, so that pairs inside of bodies are found too. It runs on the host, on all
-        cores. Raises ValueError with output="count" or "digest", and with placement="exact".
-
-        For arrays that were in memory of the device, what the kernels had is read back: all vertices, 16
-        bytes each or 32 in double, by this call alone. It is there until the collider's next run; afterwards
-        the answer raises ValueError. The arrays themselves can be overwritten."""
-        return self._numbering.rows_of(self._core.meeting())
-
-    def contacts(self) -> Contacts:
-        """Contacts of the pairs (see Contacts), in host memory. The contact rule determines which pairs have
-        some: with the default, "sat", all that meet; other rules need boundary faces
-        (docs/user/python_answers.md)."""
-        pairs, *columns = self._core.contacts()
-        return Contacts(self._numbering.rows_of(pairs), *columns)
-
-    def __repr__(self) -> str:
-        return f"<tandem.Answer: {self.count} pairs, {self.contact_count} contacts>"
+def _setting_texts(settings, self_collision):
+    """The texts of settings, of which self_collision is another name of one."""
+    if self_collision is not False:
+        if "self" in settings:
+            raise ValueError("self_collision and setting self are the same; give one of them")
+        settings = settings | {"self": "on" if self_collision is True else self_collision}
+    return {name: text_of(value, name) for name, value in settings.items()}
 
 
 class Collider:
@@ -205,50 +121,24 @@ class Collider:
             mesh_of(mesh, f"meshes[{i}]", duplicates, weld)
             for i, mesh in enumerate(list_of(meshes, "meshes"))
         ]
-        mesh_of_body = list(range(len(all_meshes)))
-        if bodies is not None:
-            mesh_of_body = [
-                number_of(value, f"bodies[{i}]") for i, value in enumerate(list_of(bodies, "bodies"))
-            ]
+        mesh_of_body = meshes_of_bodies(bodies, len(all_meshes))
         flags = flags_of(deformable, len(mesh_of_body))
         self._bodies = len(flags)
         self._deformable = [body for body, flag in enumerate(flags) if flag]
         self._numbering = numbering = Numbering(self._bodies, worlds, self._deformable)
-        for what, text in (("algorithm", algorithm), ("device", device), ("preset", preset)):
-            if not isinstance(text, str):
-                raise TypeError(f"{what}: type {type(text).__name__}; expected a name")
-        if self_collision is not False:
-            if "self" in settings:
-                raise ValueError("self_collision and setting self are the same; give one of them")
-            settings["self"] = "on" if self_collision is True else self_collision
-        texts = {name: text_of(value, name) for name, value in settings.items()}
-        filters = list(
-            zip(
-                bits_of_bodies(body_groups, "body_groups", 1, len(flags)),
-                bits_of_bodies(meets, "meets", 2**32 - 1, len(flags)),
-            )
-        )
+        named = {"algorithm": algorithm, "device": device, "preset": preset}
+        _check_names(named)
+        texts = _setting_texts(settings, self_collision)
+        filters = filters_of(body_groups, meets, len(flags))
         apart = body_pairs_of(never_meet, "never_meet", len(flags))
         address = None if stream is None else stream_address(stream)
         count = numbering.count
-        options = _core.ColliderOptions(
-            mesh_of_body * count,
-            flags * count,
-            algorithm,
-            preset,
-            device,
-            texts,
-            filters * count,
-            numbering.in_all_worlds(apart),
-            count,
-            address,
-        )
+        of_bodies = (mesh_of_body * count, flags * count, algorithm, preset, device, texts, filters * count)
+        options = _core.ColliderOptions(*of_bodies, numbering.in_all_worlds(apart), count, address)
         self._core = _core.Collider(all_meshes, options, stream)
         if self._core.nothing_meets:
             warn(f"nothing can meet: {self._core.nothing_meets}")
-        self._arguments = {
-            "algorithm": algorithm,
-            "device": device,
+        self._arguments = named | {
             "bodies": mesh_of_body,
             "deformable": self._deformable,
             "body_groups": lists_of(body_groups),
@@ -257,7 +147,6 @@ class Collider:
             "duplicates": duplicates,
             "weld": weld,
             "worlds": numbering.worlds,
-            "preset": preset,
             **texts,
         }
 

@@ -39,50 +39,41 @@ def write_frames(
     parts = [mesh_of(mesh, f"meshes[{i}]") for i, mesh in enumerate(list_of(meshes, "meshes"))]
     numbers = list(range(len(parts))) if bodies is None else _numbers(bodies, "bodies", "mesh")
     soft = sorted(set(_numbers(deformable, "deformable", "body")))
-    if (
-        not parts
-        or any(number >= len(parts) for number in numbers)
-        or any(body >= len(numbers) for body in soft)
-    ):
+    if not parts or max(numbers, default=0) >= len(parts) or max(soft, default=-1) >= len(numbers):
         raise ValueError(
             f"bodies, deformable: {numbers}, {soft}; there are {len(parts)} meshes and {len(numbers)} bodies, numbered from 0"
         )
     rigid = [body for body in range(len(numbers)) if body not in soft]
-    moves, states = (
-        _poses(poses, numbers, rigid),
-        _states(vertices, [len(parts[number].vertices) for number in numbers], soft),
-    )
+    moves = _poses(poses, numbers, rigid)
+    states = _states(vertices, [len(parts[number].vertices) for number in numbers], soft)
     frames = {len(given) for given, needed in ((moves, rigid), (states, soft)) if needed}
     if len(frames) != 1 or 0 in frames:
         raise ValueError(
             f"poses, vertices: {len(moves)} and {len(states)} frames; give one entry for each frame in both"
         )
-    (count,) = frames
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True)
     for i, part in enumerate(parts):
         (folder / f"mesh{i}.vtu").write_text(_vtu(part.vertices, part.tetrahedra), encoding="ascii")
-    described = []
-    for body, number in enumerate(numbers):
-        described.append({"mesh": f"mesh{number}"})
-        if body not in soft:
-            described[-1]["poses"] = [rows[body].tolist() for rows in moves]
-            continue
-        described[-1]["series"] = [f"body{body}-{frame:06}.vtu" for frame in range(count)]
-        for name, state in zip(described[-1]["series"], states):
-            (folder / name).write_text(_vtu(state[body], parts[number].tetrahedra), encoding="ascii")
+    described = [{"mesh": f"mesh{number}"} for number in numbers]
+    for body in rigid:
+        described[body]["poses"] = [rows[body].tolist() for rows in moves]
+    for body in soft:
+        described[body]["series"] = _series(folder, body, states, parts[numbers[body]].tetrahedra)
     scene = folder / "scene.json"
+    names = {f"mesh{i}": {"file": f"mesh{i}.vtu"} for i in range(len(parts))}
     scene.write_text(
-        json.dumps(
-            {
-                "name": folder.name,
-                "frames": count,
-                "meshes": {f"mesh{i}": {"file": f"mesh{i}.vtu"} for i in range(len(parts))},
-                "bodies": described,
-            }
-        )
+        json.dumps({"name": folder.name, "frames": frames.pop(), "meshes": names, "bodies": described})
     )
     return scene
+
+
+def _series(folder, body, states, tetrahedra):
+    """Writes the states of a deformable body. Returns the names of their files."""
+    names = [f"body{body}-{frame:06}.vtu" for frame in range(len(states))]
+    for name, state in zip(names, states):
+        (folder / name).write_text(_vtu(state[body], tetrahedra), encoding="ascii")
+    return names
 
 
 def _numbers(values, what, of):

@@ -247,49 +247,24 @@ def _unbeaten(cells):
     return [not any(beats(other, cell) for other in rows) for cell in rows]
 
 
-def plot_errors(records, error="depth_relative", which="median", ax=None):
-    """Draws milliseconds per frame over an error against the exact truth ("depth_relative", "hausdorff",
-    "false_share", ...; its "median", "p99" or "max") for the cells of one scene, frame range and device.
-    Pareto-optimal cells are numbered and named below the axes, the rest is pale. Cells without error are at
-    the left edge. Returns the axes. Raises ValueError for an error that the records do not have."""
-    found = records.errors[(records.errors["error"] == error) & records.errors[which].notna()].set_index(
-        "cell"
-    )[which]
-    if found.empty:
-        known = ", ".join(records.errors["error"].unique()) or "none: measure with --truth"
-        raise ValueError(f"{error}: no such error in these records; there are {known}")
-    cells = _rankable(records.cells.loc[found.index]).sort_values("ms")
-    where = _group_title(cells)
-    cells = cells.assign(error=found[cells.index])
-    unbeaten = _unbeaten(cells)
-    best = cells[unbeaten]
-    names = labels(best.drop(columns="error"), without=GROUP).str.replace(
-        r"\b[a-z_]+=(?=[a-z])", "", regex=True
-    )  # values that are words need no name of the setting
-    numbers = {cell: number for number, cell in enumerate(best.index, 1)}
-    ax = _axes(ax, 3.8 + 0.16 * len(best))
+def _draw_errors(ax, cells, names):
+    """Draws times over errors. names: of the numbered cells, in their order; the legend has them."""
+    numbers = {cell: number for number, cell in enumerate(names.index, 1)}
     some = cells["error"][cells["error"] > 0]
     edge = some.min() / 10 if len(some) else 1.0
     for cell in cells[::-1].itertuples():  # draws the fastest last, on top
         position, number = max(cell.error, edge), numbers.get(cell.Index)
-        colour = WINNER if number else PALE
-        ax.plot(
-            [position, position],
-            [cell.ms_low, cell.ms_high],
-            color=colour,
-            linewidth=2,
-            solid_capstyle="butt",
-        )
-        ax.plot(
-            position,
-            cell.ms,
+        colour, marker, size, text = (
+            WINNER if number else PALE,
             "D" if number else "o",
-            color=colour,
-            markersize=6 if number else 4,
-            label=f"{number}  {names[cell.Index]}: {_figures(cell.ms)} ms, {_figures(cell.error)}"
-            if number
-            else None,
+            6 if number else 4,
+            None,
         )
+        if number:
+            text = f"{number}  {names[cell.Index]}: {_figures(cell.ms)} ms, {_figures(cell.error)}"
+        interval = [cell.ms_low, cell.ms_high]
+        ax.plot([position, position], interval, color=colour, linewidth=2, solid_capstyle="butt")
+        ax.plot(position, cell.ms, marker, color=colour, markersize=size, label=text)
         if number:
             ax.annotate(
                 str(number),
@@ -317,6 +292,30 @@ def plot_errors(records, error="depth_relative", which="median", ax=None):
         title_fontsize=7,
         alignment="left",
     )
+
+
+def plot_errors(records, error="depth_relative", which="median", ax=None):
+    """Draws milliseconds per frame over an error against the exact truth ("depth_relative", "hausdorff",
+    "false_share", ...; its "median", "p99" or "max") for the cells of one scene, frame range and device.
+    Pareto-optimal cells are numbered and named below the axes, the rest is pale. Cells without error are at
+    the left edge. Returns the axes. Raises ValueError for an error that the records do not have."""
+    found = records.errors[(records.errors["error"] == error) & records.errors[which].notna()].set_index(
+        "cell"
+    )[which]
+    if found.empty:
+        known = ", ".join(records.errors["error"].unique()) or "none: measure with --truth"
+        raise ValueError(f"{error}: no such error in these records; there are {known}")
+    cells = _rankable(records.cells.loc[found.index]).sort_values("ms")
+    where = _group_title(cells)
+    cells = cells.assign(error=found[cells.index])
+    unbeaten = _unbeaten(cells)
+    best = cells[unbeaten]
+    # Values that are words need no name of the setting.
+    names = labels(best.drop(columns="error"), without=GROUP).str.replace(
+        r"\b[a-z_]+=(?=[a-z])", "", regex=True
+    )
+    ax = _axes(ax, 3.8 + 0.16 * len(best))
+    _draw_errors(ax, cells, names)
     ax.set_xlabel(
         f"{ERRORS.get(error, error)}, {which}" if not error.endswith("_share") else ERRORS[error], fontsize=8
     )

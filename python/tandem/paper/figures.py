@@ -3,11 +3,10 @@
 
 import numpy
 
-from ..fields import at
+from . import sweep_figures
 from .drawing import (
     COLOUR_OF,
     COLOURS,
-    INK,
     PALE,
     STAGES,
     WINNER,
@@ -18,7 +17,7 @@ from .drawing import (
     missing,
 )
 from .folder import SCENES, STEPS_OF_PAPER, STEPS_OF_TABLES, number, paper_table
-from .methods import found, name_of, names
+from .methods import found, name_of
 from .tables import written
 
 MAX_COSTS = 6  # as in the paper
@@ -73,6 +72,18 @@ def _figure7_rows(cases):
     return rows
 
 
+def _draw_costs(ax, percents):
+    """Draws the largest stages of each row in percent."""
+    total = lambda stage: sum(percent[stage] for percent in percents)
+    left = numpy.zeros(len(percents))
+    for stage in sorted(STAGES, key=total, reverse=True)[:MAX_COSTS]:
+        part = numpy.array([percent[stage] for percent in percents])
+        ax.barh(range(len(percents)), part, left=left, color=COLOUR_OF[stage], label=stage, height=0.7)
+        left += part
+    ax.set_xlabel("percent of a frame's stages, the six largest")
+    legend_above(ax, 6)
+
+
 def figure7(folder):
     """The six largest costs of gProximity in percent, and its launches."""
     rows = _figure7_rows(published(folder, "gproximity"))
@@ -86,16 +97,7 @@ def figure7(folder):
         {stage: 100 * seconds.get(stage, 0) / sum(seconds.values()) for stage in STAGES}
         for _, seconds, _, _ in rows
     ]
-    costs = sorted(STAGES, key=lambda stage: sum(percent[stage] for percent in percents), reverse=True)[
-        :MAX_COSTS
-    ]
-    left = numpy.zeros(len(rows))
-    for stage in costs:
-        part = numpy.array([percent[stage] for percent in percents])
-        costs_panel.barh(range(len(rows)), part, left=left, color=COLOUR_OF[stage], label=stage, height=0.7)
-        left += part
-    costs_panel.set_xlabel("percent of a frame's stages, the six largest")
-    legend_above(costs_panel, 6)
+    _draw_costs(costs_panel, percents)
     launches.barh(
         range(len(rows)),
         [count for _, _, count, _ in rows],
@@ -130,6 +132,23 @@ def figure7(folder):
         title
         + (f", and {text['paper']} on the paper's {GPU} with its whole array" if "paper" in text else ""),
     )
+
+
+def _draw_launches(plot, ax, case):
+    """Draws launches a frame of each range of frames."""
+    counts = sorted(
+        (cell.first_frame, cell.last_frame, cell.of_stages("launches") / cell.frames) for cell in case.cells
+    )
+    ax.plot(
+        [(first + last) / 2 for first, last, _ in counts],
+        [count for *_, count in counts],
+        "o-",
+        markersize=3,
+        color=WINNER,
+    )
+    plot.rows += [{"frame": first, "stage": "launches", "launches": count} for first, _, count in counts]
+    ax.set(ylabel="launches a frame", xlabel="frame")
+    ax.set_ylim(bottom=0)
 
 
 def figure8(folder):
@@ -169,19 +188,7 @@ def figure8(folder):
     milliseconds(times)
     legend_above(times, 6)
     log_axis(times.yaxis)
-    counts = sorted(
-        (cell.first_frame, cell.last_frame, cell.of_stages("launches") / cell.frames) for cell in case.cells
-    )
-    launches.plot(
-        [(first + last) / 2 for first, last, _ in counts],
-        [count for *_, count in counts],
-        "o-",
-        markersize=3,
-        color=WINNER,
-    )
-    plot.rows += [{"frame": first, "stage": "launches", "launches": count} for first, _, count in counts]
-    launches.set(ylabel="launches a frame", xlabel="frame")
-    launches.set_ylim(bottom=0)
+    _draw_launches(plot, launches, case)
     largest = max(tops, key=tops.get)
     return plot.save(
         folder.path,
@@ -267,145 +274,8 @@ def figure12(folder):
     )
 
 
-def _thresholds(cases, preset):
-    own = sorted((int(case.settings["seed_threshold"]), case) for case in cases if case.preset == preset)
-    return [value for value, _ in own], [case for _, case in own]
-
-
-def _threshold_panel(ax, x, own):
-    """Draws times over thresholds. Returns the fastest threshold."""
-    for name, colour in (
-        ("traverse", COLOUR_OF["traverse"]),
-        ("seed", "#777777"),
-        ("write", COLOUR_OF["write"]),
-    ):
-        ax.plot(
-            x,
-            [1e3 * case.stage(name) / case.frames for case in own],
-            "o-",
-            color=colour,
-            markersize=4,
-            label=name,
-        )
-    median, low, high = (
-        numpy.array([1e3 * case.total(which) / case.frames for case in own])
-        for which in ("median", "low", "high")
-    )
-    ax.plot(x, median, "o-", color=INK, markersize=4, label="whole frame")
-    ax.fill_between(x, low, high, color=INK, alpha=0.15, linewidth=0)
-    ax.set(xscale="log", yscale="log", xlabel="seed threshold")
-    ax.set_title(name_of(own[0]), fontsize=9, loc="right", color=INK)
-    milliseconds(ax)
-    log_axis(ax.xaxis)
-    log_axis(ax.yaxis)
-    legend_above(ax, 4)
-    best = int(median.argmin())
-    ax.plot(x[best], median[best], "o", color=WINNER, markersize=8, fillstyle="none")
-    return x[best]
-
-
-def figure13(folder):
-    cases = folder.cases("thresholds")
-    presets = [
-        preset for preset in ("published", "paper", "grouped") if any(case.preset == preset for case in cases)
-    ]
-    if not presets:
-        return missing(folder.path, 13, "Seed thresholds", "no cell of the sweep has completed")
-    plot = Plot(13, len(presets), 2.7)
-    minima = []
-    for ax, preset in zip(plot.axes, presets):
-        x, own = _thresholds(cases, preset)
-        minima.append(f"{name_of(own[0])} at {written(_threshold_panel(ax, x, own))}")
-        plot.rows += [
-            {
-                "method": name_of(case),
-                "seed_threshold": value,
-                "traverse_ms": 1e3 * case.stage("traverse") / case.frames,
-                "whole_ms": 1e3 * case.total() / case.frames,
-                "low_ms": 1e3 * case.total("low") / case.frames,
-                "high_ms": 1e3 * case.total("high") / case.frames,
-                "seeds": sum(
-                    cell.record["work"]["counters"].get("seeds", 0)
-                    for cell in case.cells
-                    if at(cell.record, "work", "counters")
-                )
-                / case.frames,
-                "samples": case.rounds,
-                "records": case.locations[0],
-            }
-            for value, case in zip(x, own)
-        ]
-    return plot.save(
-        folder.path,
-        f"Seed thresholds on {cases[0].scene}, with the least median: {'; '.join(minima)} (the paper's figure has no numbers)",
-    )
-
-
-def _chunk_panel(plot, ax, cases, k):
-    """Draws a frame's time over chunk bytes by order. Returns the fastest in words."""
-    own_k = [case for case in cases if case.settings["k"] == k]
-    for colour, order in zip(COLOURS, sorted({case.settings["builder"] for case in own_k})):
-        own = sorted(
-            (case for case in own_k if case.settings["builder"] == order),
-            key=lambda case: int(case.settings["chunk_bytes"]),
-        )
-        x = [int(case.settings["chunk_bytes"]) for case in own]
-        y, low, high = (
-            [1e3 * case.total(which) / case.frames for case in own] for which in ("median", "low", "high")
-        )
-        ax.fill_between(x, low, high, color=colour, alpha=0.2, linewidth=0)
-        ax.plot(x, y, "o-", color=colour, markersize=4, label=order)
-        plot.rows += [
-            {
-                "k": k,
-                "method": name_of(case),
-                "order": order,
-                "chunk_bytes": bytes_,
-                "ms": ms,
-                "low_ms": l,
-                "high_ms": h,
-                "records": case.locations[0],
-            }
-            for case, bytes_, ms, l, h in zip(own, x, y, low, high)
-        ]
-    ax.set(xscale="log", yscale="log", xlabel="chunk bytes of equation (1)")
-    ax.set_title(f"{name_of(own_k[0])}, k = {k}", fontsize=9, loc="right", color=INK)
-    milliseconds(ax)
-    log_axis(ax.xaxis)
-    log_axis(ax.yaxis)
-    legend_above(ax, 4)
-    best = min(own_k, key=lambda case: case.total() / case.frames)
-    ax.plot(
-        int(best.settings["chunk_bytes"]),
-        1e3 * best.total() / best.frames,
-        "o",
-        color=WINNER,
-        markersize=9,
-        fillstyle="none",
-    )
-    return f"{best.settings['builder']}, {int(best.settings['chunk_bytes']):,} bytes with k = {k}"
-
-
-def figure14(folder):
-    """Chunk bytes of equation (1) and orders of tetrahedra. The paper mentions them but does not measure them."""
-    cases = folder.cases("chunk-study")
-    if not cases:
-        return missing(
-            folder.path, 14, "Chunk bytes and orders of tetrahedra", "no cell of the study has completed"
-        )
-    panels = sorted(
-        {(case.preset, case.settings["k"]) for case in cases}, key=lambda panel: (panel[0], int(panel[1]))
-    )
-    plot = Plot(14, len(panels), 3.0)
-    minima = [
-        _chunk_panel(plot, ax, [case for case in cases if case.preset == preset], k)
-        for ax, (preset, k) in zip(plot.axes, panels)
-    ]
-    return plot.save(
-        folder.path,
-        f"Beyond the paper, chunk bytes and orders on {cases[0].scene}, with the least medians: {'; '.join(minima)}",
-    )
-
-
 def all_of_frames(folder):
-    return {int(make.__name__[6:]): make(folder) for make in (figure7, figure8, figure12, figure13, figure14)}
+    return {
+        int(make.__name__[6:]): make(folder)
+        for make in (figure7, figure8, figure12, sweep_figures.figure13, sweep_figures.figure14)
+    }
