@@ -81,8 +81,8 @@ class Scripts(ScriptCase):
             "second.jsonl": (line + b'{"schema":4,"key"\n', ":2: is not JSON"),
             "torn.jsonl": (line[:100], "torn.jsonl: its only line has no end"),
             "old.jsonl": (
-                json.dumps({**record, "schema": 2}).encode() + b"\n",
-                [":1: a record of schema 2", "scripts/convert_records"],
+                json.dumps({**record, "schema": 1}).encode() + b"\n",
+                [":1: a record of schema 1", "scripts/convert_records"],
             ),
             "newer.jsonl": (
                 json.dumps({**record, "schema": 9}).encode() + b"\n",
@@ -223,7 +223,8 @@ class Scripts(ScriptCase):
                     json.dumps({**older(record), "schema": record["schema"] - 1}) + "\n" for record in records
                 )
             )
-            self.refused("tables", "convert_records", path)
+            if "key" not in records[0]:  # cells of the two schemas before are read
+                self.refused("tables", "convert_records", path)
             self.output_of("convert_records", path)
             self.assertEqual([json.loads(line) for line in path.read_text().splitlines()], records, name)
             once = path.read_bytes()

@@ -15,15 +15,10 @@ from .telling import warn
 # Kernels that the paper's release has too. Our refit has a launch for strips and one for tops; our balance
 # has one that plans and one that moves. In the release, the host or these kernels do the work of seeds, body
 # pairs and decisions.
-RELEASE_KERNELS = (
-    "transform_vertices",
-    "refit_tops",
-    "traverse",
-    "traverse_in_groups",
-    "traverse_queues",
-    "plan_balance",
-    "generate_contacts",
-)
+RELEASE_KERNELS = """
+    transform_vertices refit_tops traverse traverse_in_groups traverse_queues plan_balance
+    generate_contacts
+""".split()
 
 
 @dataclasses.dataclass(frozen=True)

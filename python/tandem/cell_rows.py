@@ -8,47 +8,12 @@ computed here."""
 from .fields import DECLARED, at, frames_of, milliseconds
 
 TYPES = {field.name: field.kind for field in DECLARED}  # of the columns that are fields
-_ORDER = (
-    "status",
-    "failure",
-    "algorithm",
-    "preset",
-    "device",
-    "device_name",
-    "driver",
-    "scene",
-    "scene_digest",
-    "bodies",
-    "tetrahedra",
-    "first_frame",
-    "last_frame",
-    "ms",
-    "ms_low",
-    "ms_high",
-    "samples",
-    "rounds",
-    "converged",
-    "disturbed",
-    "device_span_ms",
-    "launches",
-    "waits",
-    "candidate_pairs",
-    "contacts",
-    "missing",
-    "extra",
-    "contact_frames_wrong",
-    "pairs_missed",
-    "rounding_lost",
-    "rounding_extra",
-    "rounding_depth_change",
-    "flattened",
-    "device_bytes",
-    "commit",
-    "dirty",
-    "date",
-    "session",
-    "key",
-)
+_ORDER = """
+    status failure algorithm preset device device_name driver scene scene_digest bodies tetrahedra
+    first_frame last_frame ms ms_low ms_high samples rounds converged disturbed device_span_ms launches
+    waits candidate_pairs contacts missing extra contact_frames_wrong pairs_missed rounding_lost
+    rounding_extra rounding_depth_change flattened device_bytes commit dirty date session key
+""".split()
 FIRST_COLUMNS = (*_ORDER, *(name for name in TYPES if name not in _ORDER))
 GROUPS = ("stage_", "count_", "set_")  # prefixes of further columns
 TIMES = ("ms", "ms_low", "ms_high", "device_span_ms")

@@ -13,17 +13,7 @@ TYPES = {
     "number": ((int, float), "number"),
     "boolean": (bool, "truth value"),
 }
-NEEDED = (
-    "key",
-    "status",
-    "algorithm",
-    "preset",
-    "scene",
-    "scene_digest",
-    "first_frame",
-    "last_frame",
-    "dirty",
-)
+NEEDED = "key status algorithm preset scene scene_digest first_frame last_frame dirty".split()
 
 
 def at(record, *path):

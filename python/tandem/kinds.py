@@ -2,10 +2,12 @@
 """Reads files that have records of several kinds."""
 
 import contextlib
+import json
 
 from . import lines
 
 SCHEMAS = {"cell": 4, "verdict": 4, "profile": 2, "simulation": 3, "ceilings": 1}
+CONVERT = "convert it with scripts/convert_records, which is installed as tandem-convert-records"
 _MARKS = {
     "profile_of": "profile",
     "key": "cell",
@@ -24,28 +26,29 @@ def kind_of(record):
     return next((kind for field, kind in _MARKS.items() if field in record), None)
 
 
-def _checked(text, location):
-    record = lines.parsed(text, location)
+def checked(text, location, what_to_give=lines.WHAT_TO_GIVE):
+    """The kind and the record of the bytes of a line. Raises RecordError."""
+    record = lines.parsed(text, location, what_to_give)
     kind = kind_of(record)
     if kind is None:
-        raise lines.RecordError(f"{location}: is no record of tandem; {lines.WHAT_TO_GIVE}")
+        raise lines.RecordError(f"{location}: is no record of tandem; {what_to_give}")
     schema = record.get("schema")
-    if schema == SCHEMAS[kind]:
-        return kind, record
-    if isinstance(schema, int) and schema > SCHEMAS[kind]:
-        action = "use the package of the program that wrote it"
-    else:
-        action = "convert it with scripts/convert_records, which is installed as tandem-convert-records"
-    raise lines.RecordError(
-        f"{location}: a record of schema {schema}, but the schema of a {kind} is {SCHEMAS[kind]}; {action}"
-    )
+    if kind == "cell":
+        lines.checked_cell(record, location)
+    elif schema != SCHEMAS[kind]:
+        is_newer = isinstance(schema, int) and schema > SCHEMAS[kind]
+        action = "use the package of the program that wrote it" if is_newer else CONVERT
+        raise lines.RecordError(
+            f"{location}: a record of schema {json.dumps(schema)}, but the schema of a {kind} is {SCHEMAS[kind]}; {action}"
+        )
+    return kind, record
 
 
 def each(path, torn):
     """Yields ("FILE:LINE", kind, record) for every record of a file. Leaves out a last line without an end,
     and calls `torn` with a message about it. Raises RecordError."""
     number = 0
-    for number, (kind, record) in lines.numbered(path, torn, _checked):
+    for number, (kind, record) in lines.numbered(path, torn, checked):
         yield f"{path}:{number}", kind, record
     if number == 0:
         raise lines.RecordError(f"{path}: its only line has no end; name a file of records")

@@ -13,20 +13,9 @@ WINNER, PALE, INK = "#0b5394", "#9aa5b1", "#333333"
 # Wong 2011, "Points of view: Color blindness", Nature Methods 8: distinct for readers with colour blindness.
 COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442", "#000000")
 GROUP = ["scene", "first_frame", "last_frame", "device_name"]
-STAGE_ORDER = (
-    "broad",
-    "refit",
-    "seed",
-    "traverse",
-    "balance",
-    "contact",
-    "sort",
-    "preprocess",
-    "postprocess",
-    "read",
-    "write",
-    "exchange",
-)
+STAGE_ORDER = """
+    broad refit seed traverse balance contact sort preprocess postprocess read write exchange
+""".split()
 
 
 def _rankable(cells):

@@ -5,6 +5,8 @@ and its status, then come times in milliseconds per frame, counters and settings
 text that begins with =, +, -, @, tab or carriage return has an apostrophe before it, so that spreadsheets do
 not take it for a formula; control characters of texts are escapes. Numbers are never changed."""
 
+import csv
+import io
 import json
 
 from .. import cell_rows, lines
@@ -43,17 +45,13 @@ def _text(column, value):
     )
 
 
-def _quoted(text):
-    if not any(character in text for character in ',"\r\n'):
-        return text
-    return '"' + text.replace('"', '""') + '"'
-
-
 def as_csv(rows):
     """The table of rows of cell_rows.row()."""
-    columns = cell_rows.columns(rows)
-    table = [columns, *([_text(column, row.get(column)) for column in columns] for row in rows)]
-    return "".join(",".join(map(_quoted, line)) + "\n" for line in table)
+    columns, text = cell_rows.columns(rows), io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows([_text(column, row.get(column)) for column in columns] for row in rows)
+    return text.getvalue()
 
 
 def _write(path, text):

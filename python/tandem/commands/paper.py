@@ -17,25 +17,10 @@ from . import Parser, check_packages, check_together, print_error, run
 PACKAGES = ("matplotlib", "pandas", "scipy")
 
 
-CLAIM_COLUMNS = (
-    "claim",
-    "where",
-    "says",
-    "scene",
-    "verdict",
-    "value",
-    "low",
-    "high",
-    "unit",
-    "paper_low",
-    "paper_high",
-    "samples",
-    "basis",
-    "disturbed",
-    "frames",
-    "reason",
-    "records",
-)
+CLAIM_COLUMNS = """
+    claim where says scene verdict value low high unit paper_low paper_high samples basis disturbed frames
+    reason records
+""".split()
 
 
 def claim_rows(claim):

@@ -11,19 +11,7 @@ from .notes import nothing_common
 if TYPE_CHECKING:
     import pandas
 
-COLUMNS = (
-    "verdict",
-    "old_ms",
-    "new_ms",
-    "ratio",
-    "low",
-    "high",
-    "p",
-    "p_holm",
-    "least_effect",
-    "paired",
-    "threshold",
-)
+COLUMNS = "verdict old_ms new_ms ratio low high p p_holm least_effect paired threshold".split()
 
 
 @dataclasses.dataclass(frozen=True)

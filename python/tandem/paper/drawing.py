@@ -29,19 +29,7 @@ from ..plots import COLOURS, INK, PALE, WINNER
 from .tables import short
 
 WIDTH = 6.6  # inches: readable on a phone in portrait format, two thirds of a printed page
-STAGES = (
-    "transform",
-    "refit",
-    "broad",
-    "seed",
-    "traverse",
-    "balance",
-    "contact",
-    "preprocess",
-    "postprocess",
-    "read",
-    "write",
-)
+STAGES = "transform refit broad seed traverse balance contact preprocess postprocess read write".split()
 COLOUR_OF = dict(
     zip(
         STAGES,

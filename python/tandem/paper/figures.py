@@ -4,6 +4,7 @@
 import numpy
 
 from . import sweep_figures
+from .comparison_tables import PARTS
 from .drawing import (
     COLOUR_OF,
     COLOURS,
@@ -22,17 +23,6 @@ from .tables import written
 
 MAX_COSTS = 6  # as in the paper
 GPU = "K40c"  # of the paper's devices, the one whose launch geometry preset published has
-ROWS_OF_5 = (
-    "transform",
-    "refit",
-    "traverse",
-    "contact",
-    "balance",
-    "preprocess",
-    "postprocess",
-    "read",
-    "write",
-)
 
 
 def published(folder, algorithm):
@@ -47,7 +37,7 @@ def of_paper(algorithm):
     rows = [row for row in paper_table(5) if row["gpu"] == GPU and row["algorithm"] == algorithm]
     return {
         row["scene"]: (
-            {stage: (number(row[f"{stage}_s"]) or 0) / STEPS_OF_TABLES for stage in ROWS_OF_5},
+            {stage: (number(row[f"{stage}_s"]) or 0) / STEPS_OF_TABLES for stage in PARTS},
             number(row["launches"]) / STEPS_OF_TABLES,
         )
         for row in rows

@@ -9,18 +9,10 @@ from ..fields import at
 from .conditions import conditions_text
 from .numbers import count, is_number, number, rounded, text
 
-KERNEL_NUMBERS = (
-    "share",
-    "launches",
-    "bytes",
-    "operations",
-    "bytes_per_s",
-    "operations_per_s",
-    "of_bytes",
-    "of_operations",
-    "over_floor",
-    "occupancy",
-)
+KERNEL_NUMBERS = """
+    share launches bytes operations bytes_per_s operations_per_s of_bytes of_operations over_floor
+    occupancy
+""".split()
 CEILINGS = ("bytes_per_s", "cached_bytes_per_s", "operations_per_s")
 HOST_PARTS = ("broad", "narrow", "reduce", "assemble", "solve", "move")
 MAX_RUNS, MAX_STEPS = 40, 600

@@ -2,7 +2,6 @@
 """Reads files with records of any kind for a page."""
 
 import dataclasses
-import json
 import os
 
 from .. import kinds, lines
@@ -13,13 +12,7 @@ from .other_records import Simulations, shown_ceilings, shown_profile
 WHAT_TO_GIVE = "give files that 'tandem run --out', 'profile --out', 'simulate --record' or 'devices --measure --out' wrote"
 MAX_CELLS = 6000  # with more, only one record per key is shown
 MAX_OTHER_RECORDS = 200  # profiles, and records of ceilings
-LISTS = {
-    "cell": "cells",
-    "profile": "profiles",
-    "simulation": "simulations",
-    "ceilings": "ceilings",
-    "verdict": "verdicts",
-}  # attribute of Records by kind
+LISTS = {"cell": "cells", "profile": "profiles", "simulation": "simulations", "ceilings": "ceilings"}
 
 
 @dataclasses.dataclass
@@ -120,18 +113,7 @@ class _Kept:
 
 
 def _checked(text, location):
-    """The kind and the record of a line. _add() checks schemas of cells."""
-    record = lines.parsed(text, location, WHAT_TO_GIVE)
-    kind = kinds.kind_of(record)
-    if kind is None:
-        raise lines.RecordError(f"{location}: is no record of tandem; {WHAT_TO_GIVE}")
-    known, schema = kinds.SCHEMAS[kind], record.get("schema")
-    if kind != "cell" and schema != known:
-        raise lines.RecordError(
-            f"{location}: a record of schema {json.dumps(schema)}, but this program reads {known}; convert it with "
-            "scripts/convert_records"
-        )
-    return LISTS[kind], record
+    return kinds.checked(text, location, WHAT_TO_GIVE)
 
 
 class _Reader:
@@ -143,9 +125,7 @@ class _Reader:
 
     def read(self, path):
         self.records.paths.append(os.fspath(path))
-        self.records.files.append(
-            {"name": os.path.basename(path), "cells": 0, "profiles": 0, "simulations": 0, "ceilings": 0}
-        )
+        self.records.files.append({"name": os.path.basename(path), **dict.fromkeys(LISTS.values(), 0)})
         number, before = 0, len(self.records.notes)
         for number, (kind, record) in lines.numbered(path, self.records.notes.append, _checked):
             try:
@@ -160,25 +140,20 @@ class _Reader:
             raise lines.RecordError(f"{path}: its only line has no end; name a file of records")
 
     def _add(self, kind, record, path, line):
-        if kind == "verdicts":
+        if kind == "verdict":
             self.records.verdicts.add(record, f"{path}:{line}")
             return
-        self.records.files[-1][kind] += 1
-        if kind == "cells":
-            self.cells.add(Cell(lines.checked_cell(record, f"{path}:{line}"), path, line))
-        elif kind == "simulations":
+        self.records.files[-1][LISTS[kind]] += 1
+        if kind == "cell":
+            self.cells.add(Cell(record, path, line))
+        elif kind == "simulation":
             self.simulations.add(record, path)
         else:
-            self._add_other(
-                kind, shown_profile(record, path) if kind == "profiles" else shown_ceilings(record)
-            )
-
-    def _add_other(self, kind, shown):
-        other_records = getattr(self.records, kind)
-        if len(other_records) < MAX_OTHER_RECORDS:
-            other_records.append(shown)
-        else:
-            self.left_out += 1
+            shown = shown_profile(record, path) if kind == "profile" else shown_ceilings(record)
+            others = getattr(self.records, LISTS[kind])
+            others.append(shown)
+            self.left_out += len(others) > MAX_OTHER_RECORDS
+            del others[MAX_OTHER_RECORDS:]
 
     def finish(self):
         records, cells = self.records, self.cells
