@@ -9,6 +9,8 @@ import sys
 
 RESULTS = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(RESULTS.parent / "python"))
+from tandem import cell
+from tandem.fields import frames_of
 from tandem.resampling import Ratio, median_interval, paired_ratio
 
 WALK = ("refit", "seed", "traverse", "balance")
@@ -26,29 +28,24 @@ def agrees(record):
     return record["status"] == "ok" and wrong == [0, 0, 0]
 
 
-def frames_of(record):
-    return record["frames"]["last"] - record["frames"]["first"] + 1
+class Cell(cell.Cell):
+    """A cell with milliseconds per frame by round: `total` of samples, and `walk`, the device time of refit and
+    walk, from replays that time every command."""
 
+    @property
+    def total(self):
+        return {number: ns / self.frames / 1e6 for number, ns in self.rounds.items()}
 
-class Cell:
-    """Milliseconds per frame by round: `total` of samples, and `walk`, the device time of refit and walk, from
-    replays that time every command."""
-
-    def __init__(self, record):
-        scale = 1 / frames_of(record) / 1e6
-        by_round = {}
-        for number, ns in zip(record["total_ns"]["rounds"], record["total_ns"]["samples"]):
-            by_round.setdefault(number, []).append(ns * scale)
-        self.total = {number: statistics.median(own) for number, own in by_round.items()}
-        stages = [record["stages"][name] for name in WALK if name in record["stages"]]
+    @property
+    def walk(self):
+        stages = [self.record["stages"][name] for name in WALK if name in self.record["stages"]]
         walks = zip(*(stage["device_ns"]["samples"] for stage in stages))
-        self.walk = {number: sum(own) * scale for number, own in enumerate(walks)}
-        devices = " and ".join(sorted({device["name"] for device in record["devices"]}))
-        made = record["environment"]
-        self.origin = f"{devices}, commit {made['commit'][:7]} of {made['date'][:10]}"
+        return {number: sum(own) / self.frames / 1e6 for number, own in enumerate(walks)}
 
-    def median(self):
-        return statistics.median(self.total.values())
+    @property
+    def origin(self):
+        devices = " and ".join(sorted({device["name"] for device in self.record["devices"]}))
+        return f"{devices}, commit {self.commit[:7]} of {self.date[:10]}"
 
 
 def scene_name(scene):

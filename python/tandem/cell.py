@@ -133,7 +133,11 @@ class Cell:
     @functools.cached_property
     def samples_by_round(self):
         """The samples in nanoseconds, by the number of their round."""
-        return lines.samples_by_round(self.record)
+        total, rounds = self.record.get("total_ns") or {}, {}
+        samples = total.get("samples", [])
+        for number, ns in zip(total.get("rounds", range(len(samples))), samples):
+            rounds.setdefault(number, []).append(ns)
+        return rounds
 
     @functools.cached_property
     def frame_ms(self):

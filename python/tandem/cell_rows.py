@@ -5,7 +5,7 @@ standard library.
 Columns that are fields of a record come from their declarations in harness/, by fields.py. The others are
 computed here."""
 
-from .fields import DECLARED, at, frames_of, milliseconds
+from .fields import DECLARED, at, milliseconds
 
 TYPES = {field.name: field.kind for field in DECLARED}  # of the columns that are fields
 _ORDER = """

@@ -114,13 +114,3 @@ def numbered(path, torn, check=_cell):
         raise RecordError(f"{path}: cannot be read ({reason}); name a file of records") from None
     if number == 0:
         raise RecordError(f"{path}: is empty; name a file of records")
-
-
-def samples_by_round(record):
-    """The samples of a record in nanoseconds, by the number of their round."""
-    total = record.get("total_ns") or {}
-    samples = total.get("samples", [])
-    rounds = {}
-    for number, ns in zip(total.get("rounds", range(len(samples))), samples):
-        rounds.setdefault(number, []).append(ns)
-    return rounds

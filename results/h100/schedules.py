@@ -14,19 +14,8 @@ import sys
 
 FOLDER = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(FOLDER.parent))
-from measured import (
-    Cell,
-    agrees,
-    frames_of,
-    inverse,
-    paired,
-    records,
-    scene_name,
-    text,
-    with_interval,
-    with_width,
-)
-from tandem import cell, markdown
+from measured import Cell, agrees, inverse, paired, records, scene_name, text, with_interval, with_width
+from tandem import markdown
 from tandem.paper.quantities import batch_size
 
 METHODS = {
@@ -58,12 +47,12 @@ class Published(Cell):
     def __init__(self, record):
         super().__init__(record)
         is_batched = record["algorithm"] == "gproximity"
-        self.batch = batch_size(cell.Cell(record)) if is_batched else 0
+        self.batch = batch_size(self) if is_batched else 0
         self.body_pairs = record["work"]["body_pairs"][0]
         self.batches = self.batches_of(self.body_pairs)
         self.is_part = record["settings"].get("most_body_pairs", "0") != "0"
         write = statistics.median(record["stages"]["write"]["host_ns"]["samples"])
-        self.upload = write / frames_of(record) / 1e6 / self.batches
+        self.upload = write / self.frames / 1e6 / self.batches
 
     def batches_of(self, body_pairs):
         return max(1, math.ceil(body_pairs / self.batch)) if self.batch else 1
@@ -81,8 +70,8 @@ def with_array(small, array, chunked):
     """The text of a frame with this array, measured or composed, and how many times chunked's it takes."""
     batches = array.batches_of(small.body_pairs)
     is_whole = not array.is_part and (array.batches, array.body_pairs) == (batches, small.body_pairs)
-    ms = array.median() if is_whole else small.median() + batches * array.upload
-    return f"{text(ms)}{'' if is_whole else ' (composed)'}, {text(ms / chunked.median())} times"
+    ms = array.median_ms if is_whole else small.median_ms + batches * array.upload
+    return f"{text(ms)}{'' if is_whole else ' (composed)'}, {text(ms / chunked.median_ms)} times"
 
 
 def published():

@@ -150,7 +150,7 @@ class Answer:
     def fastest(self, scene):
         """The drawn method that is told to be the fastest in a scene."""
         own = {name: self.cells[scene, "18", method] for method, (_, _, name) in DRAWN.items()}
-        best = min(own, key=lambda name: own[name].median())
+        best = min(own, key=lambda name: own[name].median_ms)
         is_clear = all(paired(cell, own[best]).low > 1 for name, cell in own.items() if name != best)
         return best if is_clear else "not told apart"
 
@@ -170,11 +170,11 @@ class Answer:
             ax.plot(
                 median_interval(list(cell.total.values())), [row, row], color=colour, linewidth=3, alpha=0.6
             )
-            ax.plot(cell.median(), row, marker, color=colour, markersize=7, label=name if row == 0 else None)
+            ax.plot(cell.median_ms, row, marker, color=colour, markersize=7, label=name if row == 0 else None)
             if method == "tiled":
-                place = {"xy": (cell.median(), row), "xytext": (0, 8), "textcoords": "offset points"}
+                place = {"xy": (cell.median_ms, row), "xytext": (0, 8), "textcoords": "offset points"}
                 ax.annotate(
-                    text(cell.median()), ha="center", color=colour, weight="bold", fontsize=8, **place
+                    text(cell.median_ms), ha="center", color=colour, weight="bold", fontsize=8, **place
                 )
 
     def draw(self, path):

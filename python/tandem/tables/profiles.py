@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Tables of profiles: kernels, one table per profile."""
 
-from .. import cell_rows
+from ..fields import frames_of
 from .naming import Named, labels
 from .wording import notes, number, table, with_interval
 
@@ -29,7 +29,7 @@ class Profile(Named):
         total = record["total_ns"] or {}
         self.notes = notes(record)
         rounds = len(set(total.get("rounds", [])))
-        self.total_text = with_interval(total, 1e-6 / cell_rows.frames_of(record), rounds)
+        self.total_text = with_interval(total, 1e-6 / frames_of(record), rounds)
         self.kernels = [
             [
                 k["entry"],
