@@ -4,6 +4,7 @@
 #include "algorithms/bodies/ball.h"
 #include "algorithms/bounds/geometry.h"
 #include "algorithms/bodies/body_pair.h"
+#include "algorithms/bodies/frame_input.h"
 
 namespace tandem {
 

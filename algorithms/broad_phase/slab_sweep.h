@@ -4,6 +4,7 @@
 #include "algorithms/bodies/body_pair.h"
 
 #include <span>
+#include <vector>
 
 namespace tandem {
 

@@ -3,6 +3,7 @@
 
 #include "algorithms/hierarchy/radix_sort.cl.h"
 #include "algorithms/kernels/launch_shape.h"
+#include "backends/device.h"
 
 namespace tandem {
 
