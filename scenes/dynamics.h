@@ -73,7 +73,7 @@ std::optional<MaterialPair> missing_surface(const Materials& materials, std::spa
                                             std::span<const BodyDynamics> dynamics);
 
 /// The proximal contact solver (Erleben 2017). With the defaults, single bodies and short stacks of any mass
-/// are within 2 % of closed forms (tests/unit/simulate_defaults.cpp).
+/// are within 2 % of closed forms (tests/unit/simulate/defaults.cpp).
 struct SolverSettings {
     /// Updates contact after contact in one thread, or all contacts at once on all cores.
     enum class Method { gauss_seidel, jacobi };

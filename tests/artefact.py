@@ -1,15 +1,14 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""artefact.py PROGRAM SOURCE: scripts/artefact on made-up pages, and the commands of docs/artefact.md.
+# test: cost=1
+"""scripts/artefact on made-up pages, and the commands of docs/artefact.md.
 scripts/test --full runs them."""
 
 import os
 import re
 import subprocess
-import unittest
 
-from program import SOURCE, tandem
-from script_case import ScriptCase, called, loaded
+from tests.program import SOURCE, tandem
+from tests.script_case import ScriptCase, called, loaded
 
 PAGE = SOURCE / "docs/artefact.md"
 
@@ -58,7 +57,3 @@ class Artefact(ScriptCase):
         for number in range(1, 5):
             self.assertIn(f"**E{number}, ", text)
             self.assertIn(f"| E{number} | ", text)
-
-
-if __name__ == "__main__":
-    unittest.main(argv=["artefact.py"])

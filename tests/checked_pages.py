@@ -1,6 +1,6 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""checked_pages.py PROGRAM SOURCE: scripts/check_pages on small trees and on this one."""
+# test: cost=5
+"""scripts/check_pages on small trees and on this one."""
 
 import pathlib
 import re
@@ -8,7 +8,7 @@ import subprocess
 import tempfile
 import unittest
 
-from program import PROGRAM, SOURCE
+from tests.program import PROGRAM, SOURCE
 
 HELP = """#!/bin/sh
 case "$*" in
@@ -87,7 +87,3 @@ class CheckedPages(unittest.TestCase):
 
     def test_this_tree(self):
         self.assertEqual(self.found(PROGRAM, SOURCE), [])
-
-
-if __name__ == "__main__":
-    unittest.main(argv=["checked_pages.py"], verbosity=2)

@@ -1,14 +1,14 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""docs.py PROGRAM SOURCE: scripts/docs, without doxygen, which only the reference itself needs."""
+# test: cost=2
+"""scripts/docs, without doxygen, which only the reference itself needs."""
 
 import os
 import subprocess
 import sys
 import unittest
 
-from program import SOURCE
-from script_case import loaded
+from tests.program import SOURCE
+from tests.script_case import loaded
 
 
 class Docs(unittest.TestCase):
@@ -45,7 +45,3 @@ class Docs(unittest.TestCase):
         self.assertGreater(len(docs.public_headers()), 20)
         self.assertIn("backends/mpi/mpi_ranks.h", docs.public_headers())
         self.assertEqual([path for path in docs.public_headers() if not (SOURCE / path).is_file()], [])
-
-
-if __name__ == "__main__":
-    unittest.main(argv=["docs.py"], verbosity=2)

@@ -1,17 +1,18 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""licenses.py PROGRAM SOURCE: every file has a license, by a line of its own or by REUSE.toml, as `reuse
+# test: cost=1
+"""Every file has a license, by a line of its own or by REUSE.toml, as `reuse
 lint` demands; packages and pages have the notices of the libraries that they contain."""
 
 import pathlib
 import re
 import subprocess
-import sys
 import tempfile
 import tomllib
 import unittest
 
-SOURCE = pathlib.Path(sys.argv[2]).resolve() if len(sys.argv) == 3 else sys.exit(__doc__)
+SOURCE = pathlib.Path(__file__).resolve().parents[1]
+
 LINE = re.compile(rb"SPDX-License-" rb"Identifier: ([\w.+-]+)")
 BEGIN = 1000  # bytes of a file in which its line stands
 JAVASCRIPT = pathlib.Path("/usr/share/javascript")
@@ -146,4 +147,4 @@ class Licenses(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+    unittest.main(verbosity=2)

@@ -1,11 +1,11 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""metadata.py PROGRAM SOURCE: lists of packages name CMake's libraries."""
+# test: cost=2
+"""Lists of packages name CMake's libraries."""
 
 import re
 import unittest
 
-from program import SOURCE
+from tests.program import SOURCE
 
 
 class Metadata(unittest.TestCase):
@@ -19,7 +19,3 @@ class Metadata(unittest.TestCase):
         self.assertGreater(len(needed), 9)
         fetched = set(re.findall(r"[a-z0-9.-]+", fetch.partition("packages=(")[2].partition(")")[0]))
         self.assertEqual(needed - fetched, set())
-
-
-if __name__ == "__main__":
-    unittest.main(argv=["metadata.py"])

@@ -1,17 +1,15 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""pace_tests.py PROGRAM SOURCE: the rules by which tests take a process for hung (tests/pace.py)."""
+# test: cost=10
+"""The rules by which tests take a process for hung (tests/pace.py)."""
 
 import os
-import pathlib
 import re
 import subprocess
 import sys
 import unittest
 
-import pace
-
-SOURCE = pathlib.Path(sys.argv[2])
+from tests import pace
+from tests.program import SOURCE
 
 
 def start(text):
@@ -56,7 +54,3 @@ class Pace(unittest.TestCase):
                 other.kill()
                 other.communicate()
         self.assertEqual(process.returncode, 0)
-
-
-if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0]], verbosity=2)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Helpers shared by tests of the program: PROGRAM and SOURCE (the two arguments of each test), running the
-program, meshes, a test case."""
+"""Helpers shared by tests of the program: PROGRAM (build/tandem unless TANDEM_TESTED names another), SOURCE,
+running the program, meshes, a test case."""
 
 import csv
 import itertools
@@ -9,6 +9,7 @@ import os
 import pathlib
 import re
 import resource
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -16,12 +17,12 @@ import unittest
 
 import jsonschema
 
-from validate_records import problems_of_record
+from tests.validate_records import problems_of_record
 
-if len(sys.argv) != 3:
-    sys.exit(sys.modules["__main__"].__doc__)
-PROGRAM = pathlib.Path(sys.argv[1]).resolve()
-SOURCE = pathlib.Path(sys.argv[2]).resolve()
+SOURCE = pathlib.Path(__file__).resolve().parents[1]
+PROGRAM = pathlib.Path(os.environ.get("TANDEM_TESTED", SOURCE / "build/tandem")).resolve()
+BUILT = PROGRAM.parent / "tests"  # test programs, shims and stubs
+STUBS = BUILT / "stubs"  # of CUDA
 # Tests of label full use every scene, preset and device; otherwise a few, to compile and traverse less.
 LONG = "TANDEM_LONG_FORM" in os.environ
 os.environ.pop("COLUMNS", None)  # tables have their default width
@@ -41,25 +42,43 @@ def sets(settings):
     return [word for name, value in settings.items() for word in ("--set", f"{name}={value}")]
 
 
+def write_json(path, **fields):
+    """Writes an object, such as a scene or a plan."""
+    path.write_text(json.dumps(fields))
+
+
+def words_of(arguments):
+    """The words of a command line: the first argument and those that begin with "-" may be several words, as a
+    shell splits them."""
+    return [
+        word
+        for i, argument in enumerate(map(str, arguments))
+        for word in (
+            shlex.split(argument) if " " in argument and (i == 0 or argument[0] == "-") else [argument]
+        )
+    ]
+
+
 def tandem(*arguments, environment=None, address_space=None):
     """Returns (exit code, standard output, lines of standard error without PoCL's own). `address_space`
     limits the bytes of address space. A run takes one sample per cell unless the arguments choose otherwise:
     the default of ten rounds is for measurements."""
+    arguments = words_of(arguments)
     # a plan has its own stopping criterion
-    is_plan = any(str(argument).endswith("plan.json") for argument in arguments)
+    is_plan = any(argument.endswith("plan.json") for argument in arguments)
     if (
-        arguments[:1] == ("run",)
+        arguments[:1] == ["run"]
         and not is_plan
         and not {"--repeat", "--noise", "--seconds", "--profile"} & set(arguments)
     ):
-        arguments = ("run", "--repeat", 1, *arguments[1:])
+        arguments = ["run", "--repeat", "1", *arguments[1:]]
     limit = (
         (lambda: resource.setrlimit(resource.RLIMIT_AS, (address_space, address_space)))
         if address_space
         else None
     )
     done = subprocess.run(
-        [str(PROGRAM), *map(str, arguments)],
+        [str(PROGRAM), *arguments],
         capture_output=True,
         text=True,
         env={**os.environ, **(environment or {})},
@@ -81,23 +100,10 @@ def tried(what, count, unit, where="host", *, lost=0, crashes=0, hangs=0, rest=0
         r"commit (\w+)",
         subprocess.run([str(PROGRAM), "--version"], capture_output=True, text=True, check=True).stdout,
     )[1]
+    line = {"what": what, "count": count, "unit": unit, "where": where, "lost": lost, "crashes": crashes}
+    line |= {"hangs": hangs, "others": rest, "commit": commit}
     with open(os.environ["TANDEM_TRIED"], "a", encoding="utf-8") as out:
-        out.write(
-            json.dumps(
-                {
-                    "what": what,
-                    "count": count,
-                    "unit": unit,
-                    "where": where,
-                    "lost": lost,
-                    "crashes": crashes,
-                    "hangs": hangs,
-                    "others": rest,
-                    "commit": commit,
-                }
-            )
-            + "\n"
-        )
+        out.write(json.dumps(line) + "\n")
 
 
 def bar(cells, offset):
@@ -151,6 +157,12 @@ class Case(unittest.TestCase):
             self.assertEqual(problems_of_record(record), [])
         return records
 
+    def output(self, *arguments, **options):
+        """Standard output of a run that succeeds without a message."""
+        status, out, errors = tandem(*arguments, **options)
+        self.assertEqual((status, errors), (0, []), out)
+        return out
+
     def rounds_of_two_samples(self, record):
         """Checks that the record has two samples, one per round; in one round if preparation takes seconds, as on a
         busy machine."""
@@ -168,6 +180,13 @@ class Case(unittest.TestCase):
             self.assertIn(part, errors[0])
         print(f"\n  {status}: {errors[0]}", end="", file=sys.stderr)
         return out
+
+    def all_bad(self, table, **names):
+        """Every row of the table has a part of a message, and the command line that is refused with it."""
+        for row in filter(None, table.splitlines()):
+            expected, words = re.split(r" +\| +", row.format(**names))
+            with self.subTest(words):
+                self.bad(expected, words)
 
     def dump(self, path, header):
         """Rows of a dump after its header, which must be sorted by their first five numbers."""

@@ -1,6 +1,7 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""rooms.py PROGRAM SOURCE: the tables of docs/developer/rooms.md allow every include and every namespace of
+# test: cost=1
+"""The tables of docs/developer/rooms.md allow every include and every namespace of
 the tree."""
 
 import pathlib
@@ -8,7 +9,7 @@ import re
 import tempfile
 import unittest
 
-from program import SOURCE
+SOURCE = pathlib.Path(__file__).resolve().parents[1]
 
 PAGE = "docs/developer/rooms.md"
 NAMESPACE = re.compile(r"(?:inline )?namespace ([a-z_0-9:]+) \{")
@@ -274,4 +275,4 @@ class Mistakes(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=["rooms.py"], verbosity=2)
+    unittest.main(verbosity=2)

@@ -16,10 +16,10 @@ import subprocess
 import sys
 import tempfile
 
-from program import SOURCE, Case
+from tests.program import SOURCE, Case
 
 sys.dont_write_bytecode = True
-sys.path[:0] = [str(SOURCE / "scripts"), str(SOURCE / "python")]
+sys.path.insert(0, str(SOURCE / "scripts"))
 # other names are those of scripts
 MODULES = {"tables": "tandem.tables", "figures": "tandem.error_figures"}
 

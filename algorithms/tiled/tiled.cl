@@ -62,15 +62,15 @@ DEVICE void load_upper_sides(const UpperWalk* walk, GLOBAL const real* roots, Te
 }
 
 // Appends hits to the waiting pairs, and writes these once they are enough. A whole team calls it.
-DEVICE void emit_tile_pairs(const UpperWalk* walk, Team* team, const Turn* turn, Sides* sides, int by_a) {
+DEVICE void emit_tile_pairs(const UpperWalk* walk, Team* team, const Turn* turn, Sides* sides) {
     // The boxes of a tile are the tiles below, or the tile itself is its only box.
     const uint first_a = turn->a.level == walk->level ? turn->a.boxes : turn->pair.a;
     const uint first_b = turn->b.level == walk->level ? turn->b.boxes : turn->pair.b;
-    if (SELF && first_a == first_b) keep_ascending(sides->hits, by_a);
+    if (SELF && first_a == first_b) keep_ascending(sides);
     int more;
     do {
-        put_hits(team, sides->hits, first_a, first_b, by_a);
-        more = hits_left(sides->hits);
+        put_hits(team, sides, first_a, first_b);
+        more = hits_left(sides);
         LANE_BARRIER;
         const uint waiting = reserved_slots(&team->found);
         const int now = waiting >= PAIRS_FLUSHED;
@@ -108,14 +108,14 @@ KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL
         if (tested) load_upper_sides(&walk, roots, &team, &turn, box, &sides);
         count_left(&team.left_a, sides.keeps_a);
         LANE_BARRIER;
-        const int by_a = rows_are_a(&team);
+        sides.by_a = rows_are_a(&team);
         const uint rows = row_count(&team);
         if (tested) count_tests(&tally, rows, turn.is_seed);
         if (TEAM_IS_FREE && rows == 0u) {
             begin_rows(&team);
             continue;
         }
-        if (by_a) {
+        if (sides.by_a) {
             STORE_ROWS(&team, rows_a, box, DIRECTIONS, sides.keeps_a)
             load_boxes(&walk, turn.pair.b, root_of(roots, turn.pair.b), &turn.b, box);
             FOR_LANES sides.keeps_a[part] = sides.keeps_b[part];
@@ -123,7 +123,7 @@ KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL
         end_rows(&team, rows);
         LANE_BARRIER;
         FIND_HITS(&team, rows, box, DIRECTIONS, sides.keeps_a, sides.hits)
-        emit_tile_pairs(&walk, &team, &turn, &sides, by_a);
+        emit_tile_pairs(&walk, &team, &turn, &sides);
     } while (turns.next < turn_count(&turns));
     const uint waiting = reserved_slots(&team.found);
     reserve(&team, waiting, 1, status + STATUS_TILE_PAIRS + 2u * (level - 1u));
@@ -135,12 +135,12 @@ KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL
 
 // Appends hits to the waiting pairs, decides them, and writes candidate pairs once they are enough. A whole
 // team calls it.
-DEVICE void emit_leaf_pairs(const LeafWalk* walk, Team* team, const Turn* turn, uint* hits, int by_a,
-                            Rest* rest, Tally* tally) {
+DEVICE void emit_leaf_pairs(const LeafWalk* walk, Team* team, const Turn* turn, Sides* sides, Rest* rest,
+                            Tally* tally) {
     int more;
     do {
-        put_hits(team, hits, turn->pair.a * LANES, turn->pair.b * LANES, by_a);
-        more = hits_left(hits);
+        put_hits(team, sides, turn->pair.a * LANES, turn->pair.b * LANES);
+        more = hits_left(sides);
         LANE_BARRIER;
         const uint found = reserved_slots(&team->found);
         begin_rows(team);
@@ -201,14 +201,14 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
         const int has_masks = tested ? load_sides(&walk, &team, &turn, &box_of, box, &sides) : 0;
         count_left(&team.left_a, sides.keeps_a);
         LANE_BARRIER;
-        const int by_a = !has_masks && rows_are_a(&team);
+        sides.by_a = !has_masks && rows_are_a(&team);
         const uint rows = has_masks ? row_count_of_b(&team) : row_count(&team);
         if (tested) count_tests(&tally, rows, turn.is_seed);
         if (TEAM_IS_FREE && rows == 0u) {
             begin_rows(&team);
             continue;
         }
-        if (by_a) {
+        if (sides.by_a) {
             STORE_ROWS(&team, rows_a, box, TESTED_DIRECTIONS, sides.keeps_a)
             load_leaves(leaves, turn.pair.b, box);
             box_of = turn.pair.b;
@@ -218,7 +218,7 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
         LANE_BARRIER;
         FIND_HITS(&team, rows, box, TESTED_DIRECTIONS, sides.keeps_a, sides.hits)
         if (SELF) FOR_LANES sides.hits[part] &= ~sides.no_pairs[part];
-        emit_leaf_pairs(&walk, &team, &turn, sides.hits, by_a, &rest, &tally);
+        emit_leaf_pairs(&walk, &team, &turn, &sides, &rest, &tally);
     } while (turns.next < turn_count(&turns));
     const uint kept = reserved_slots(&team.found);
     reserve(&team, kept, 1, status + STATUS_PAIRS);

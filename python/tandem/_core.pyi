@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# Written by nanobind's stubgen from python/core. tests/collider_package.py compares its names with those of the module.
+# Written by nanobind's stubgen from python/core. tests/collider/package.py compares its names with those of the module.
 """The library tandem for Python. Use tandem.Collider."""
 
 from collections.abc import Mapping, Sequence

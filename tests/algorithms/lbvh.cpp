@@ -12,7 +12,6 @@
 #include <numeric>
 
 namespace tandem {
-
 namespace {
 
 constexpr std::size_t status_leaf_hits = STATUS_OWN; ///< STATUS_LEAF_HITS of lbvh.cl

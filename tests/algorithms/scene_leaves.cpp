@@ -7,7 +7,6 @@
 #include <algorithm>
 
 namespace tandem {
-
 namespace {
 
 /// The setting with another default.

@@ -7,12 +7,10 @@
 #include "scenes/hard/hard.h"
 #include "tests/support/cells.h"
 #include "tests/support/flawed.h"
+#include "tests/support/message_of.h"
 #include "tests/support/sanitized.h"
 #include "tests/support/scenes.h"
-
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
 namespace tandem {
 namespace {
@@ -29,12 +27,7 @@ Settings of_first_preset(const Traversal& traversal, const SettingTexts& given) 
 /// Why a device rejects these settings; "no error" if it accepts them.
 std::string rejection(const DeviceInfo& info, const SettingTexts& given,
                       const Traversal& traversal = embree()) {
-    try {
-        traversal.fitted(of_first_preset(traversal, given), info);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
+    return message_of([&] { traversal.fitted(of_first_preset(traversal, given), info); });
 }
 
 /// Whether the program was built without Embree.
@@ -126,8 +119,7 @@ protected:
         given["k"] = "6";
         for (const std::string capacity : {"pair_capacity", "contact_capacity"})
             given.emplace(capacity, "65536"); // clearing larger buffers would take most of the time
-        const std::array devices{&on_};
-        return traversal.prepare(devices, scene, of_first_preset(traversal, given));
+        return prepare_on(on_, traversal, scene, of_first_preset(traversal, given));
     }
 
     /// Compares pairs, digest and contacts of every frame for the same body pairs; returns the number of

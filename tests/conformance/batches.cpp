@@ -4,11 +4,10 @@
 #include "tests/support/flawed.h"
 #include "tests/support/limited.h"
 #include "tests/support/long_form.h"
+#include "tests/support/message_of.h"
 #include "tests/support/scenes.h"
-
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/on_device.h"
+#include "tests/support/test.h"
 
 namespace tandem {
 namespace {
@@ -16,13 +15,8 @@ namespace {
 using namespace support;
 using ::testing::HasSubstr;
 
-class Batches : public testing::TestWithParam<std::string> {
+class Batches : public OnDevice {
 protected:
-    std::unique_ptr<Session> prepare(const Traversal& traversal, const Scene& scene,
-                                     const SettingTexts& given) {
-        return prepare_on(on, traversal, scene, given);
-    }
-
     static void expect_equal(const FrameResult& result, const ReferenceAnswer& right) {
         EXPECT_EQ(result.count, right.digest.count);
         EXPECT_EQ(result.contacts, right.contacts);
@@ -40,12 +34,11 @@ protected:
             return std::tie(a.pair, a.feature) < std::tie(b.pair, b.feature);
         }));
     }
-
-    Device& on = device(GetParam());
 };
 
 /// Several body pairs, with every decision, by all algorithms; memory is less than pairs and contacts need.
-TEST_P(Batches, GiveTheSameAnswer) {
+TEST_P(Batches, GiveTheSameAnswerLong) {
+    TANDEM_LONG_FORM_ONLY(GetParam());
     const auto scene = crowd(71, 10, 0.9);
     std::size_t cell = 0;
     for (const auto* traversal : algorithms()) {
@@ -58,7 +51,7 @@ TEST_P(Batches, GiveTheSameAnswer) {
                     {"decision", decision}, {"precision", precision}, {"contact_rule", "sat"}, {"k", "8"}};
                 SCOPED_TRACE(std::string(traversal->name()) + text(given));
                 const auto frame = scene.frame(0);
-                const auto settings = resolve(traversal->parameters(), {}, given, traversal->name());
+                const auto settings = resolved(*traversal, given);
                 const auto right = reference(scene, frame, geometry_of(settings), true, Method::brute_force,
                                              contact_settings_of(settings));
                 const auto wanted = 16 * right.digest.count + 72 * right.contacts;
@@ -87,7 +80,7 @@ TEST_P(Batches, GiveTheSameAnswerOnThePapersDataPath) {
             const SettingTexts given{{"residency", "published"}, {"broad", "sphere"}, {"k", "8"}};
             SCOPED_TRACE(fmt::format("{} {}", traversal->name(), fraction));
             const auto frame = scene.frame(0);
-            const auto settings = resolve(traversal->parameters(), {}, given, traversal->name());
+            const auto settings = resolved(*traversal, given);
             const auto right = reference(scene, frame, geometry_of(settings), true, Method::brute_force,
                                          contact_settings_of(settings));
             const auto wanted = 16 * right.digest.count + 72 * right.contacts;
@@ -152,7 +145,7 @@ TEST_P(Batches, ContactsRunInRoundsWhenTheirListsAreShort) {
     const auto frame = scene.frame(0);
     const auto& traversal = algorithm("tiled");
     for (const std::string rule : {"opposing", "sat"}) {
-        const auto settings = resolve(traversal.parameters(), {}, {{"contact_rule", rule}}, traversal.name());
+        const auto settings = resolved(traversal, {{"contact_rule", rule}});
         const auto right = reference(scene, frame, {}, true, Method::sweep, contact_settings_of(settings));
         const auto pairs = right.digest.count;
         ASSERT_GT(pairs, 4000u); // the stage never uses rounds of 1,024 pairs or fewer
@@ -181,6 +174,7 @@ TEST_P(Batches, ContactsRunInRoundsWhenTheirListsAreShort) {
 
 /// No memory beyond what is allocated: the run fails. The next run, with memory, is correct.
 TEST_P(Batches, ASessionWithoutMemoryCanBeUsedAgain) {
+    TANDEM_LONG_FORM_ONLY(GetParam());
     const auto scene = crowd(73, 2, 0.4);
     const auto frame = scene.frame(0);
     const auto right = reference(scene, frame, {}, true, Method::brute_force);
@@ -221,8 +215,7 @@ TEST_P(Batches, AnAnswerOutlivesTheNextRuns) {
         }
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices, Batches, testing::ValuesIn(device_names()),
-                         [](const auto& test) { return device_label(test.param); });
+TANDEM_ON_DEVICES(Batches);
 
 /// One cell on several devices, one of them twice.
 class Split : public testing::Test {
@@ -230,19 +223,15 @@ protected:
     static std::unique_ptr<Session> prepare(const Traversal& traversal, const Scene& scene,
                                             const SettingTexts& given) {
         const std::array devices{&device("host"), &device("opencl:0")};
-        return traversal.prepare(devices, scene,
-                                 resolve(traversal.parameters(), {}, given, traversal.name()));
+        return traversal.prepare(devices, scene, resolved(traversal, given));
     }
 };
 
-TEST_F(Split, PartsAddUp) {
+TEST_F(Split, PartsAddUpOnlyLong) {
     const auto scene = crowd(75, 9, 0.9);
     for (const auto* traversal : algorithms())
         for (const std::string output : {"pairs", "digest", "count"})
             for (const std::string broad : {"device", "sphere"}) {
-                // The short form runs one broad phase with each output, and the other one with the next
-                // output.
-                if (!long_form() && (output == "digest") == (broad == "device")) continue;
                 SCOPED_TRACE(fmt::format("{} {} {}", traversal->name(), output, broad));
                 const auto session = prepare(*traversal, scene, {{"output", output}, {"broad", broad}});
                 EXPECT_EQ(session->devices().size(), 2u);
@@ -266,12 +255,10 @@ TEST_F(Split, ThePapersDataPathNeedsASingleDevice) {
     const auto scene = crowd(76, 3, 0.9);
     for (const auto* traversal : algorithms()) {
         if (!declares(*traversal, "residency")) continue;
-        try {
-            prepare(*traversal, scene, {{"residency", "published"}});
-            FAIL();
-        } catch (const InputError& error) {
-            EXPECT_THAT(error.what(), HasSubstr("cannot split a frame between host + opencl:0"));
-        }
+        EXPECT_THAT(message_of([&] {
+                        prepare(*traversal, scene, {{"residency", "published"}});
+                    }),
+                    HasSubstr("cannot split a frame between host + opencl:0"));
     }
 }
 
@@ -281,8 +268,7 @@ TEST_F(Split, CountsOfWorkAddUp) {
     const SettingTexts given{{"broad", "sphere"}, {"seed_threshold", "1e7"}};
     const auto both = prepare(traversal, scene, given);
     const std::array one{&device("host")};
-    const auto alone =
-        traversal.prepare(one, scene, resolve(traversal.parameters(), {}, given, traversal.name()));
+    const auto alone = traversal.prepare(one, scene, resolved(traversal, given));
     both->count_work(true);
     alone->count_work(true);
     const auto frame = scene.frame(0);

@@ -6,10 +6,7 @@
 #include "tests/support/long_form.h"
 #include "tests/support/sanitized.h"
 #include "tests/support/scenes.h"
-
-#include <cmath>
-#include <fmt/format.h>
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
 namespace tandem {
 namespace {

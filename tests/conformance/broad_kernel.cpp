@@ -2,6 +2,7 @@
 // The kernels of the device's broad phase: their body pairs against those of a double loop over the root
 // volumes on the device.
 #include "tests/support/broad.h"
+#include "tests/support/on_device.h"
 
 namespace tandem {
 namespace {
@@ -35,10 +36,9 @@ Scene row_of_cubes(std::uint32_t bodies) {
     return still_scene(unit_cube(), positions);
 }
 
-class BroadKernel : public testing::TestWithParam<std::string> {};
+class BroadKernel : public OnDevice {};
 
 TEST_P(BroadKernel, EqualsADoubleLoopOverTheRootVolumes) {
-    auto& on = device(GetParam());
     for (const auto& geometry : {Geometry{}, Geometry{.k = 8}, Geometry{.k = 8, .precision = Precision::fp64},
                                  Geometry{.k = 18, .precision = Precision::fp64}}) {
         const auto scene = crowd(77, 40, 2.5);
@@ -57,7 +57,6 @@ TEST_P(BroadKernel, EqualsADoubleLoopOverTheRootVolumes) {
 /// 25 tiles, several per work-group, in batches of as many as the group has work-items. The sorting order is
 /// out of date. Every third body is fixed, so some tiles are fixed partly and others completely.
 TEST_P(BroadKernel, ManyTilesInAnyOrder) {
-    auto& on = device(GetParam());
     const auto scene = gravel(3, 800, 12, 3);
     for (const std::uint32_t groups : {1u, 7u, 100000u}) {
         for (const std::uint32_t group_size : {1u, 8u, 32u}) {
@@ -73,7 +72,6 @@ TEST_P(BroadKernel, ManyTilesInAnyOrder) {
 }
 
 TEST_P(BroadKernel, TouchingOverlaps) {
-    auto& on = device(GetParam());
     const auto scene = lattice(5);
     for (const auto& geometry : {Geometry{}, Geometry{.precision = Precision::fp64}}) {
         Search search(on, scene, geometry, 32, 100);
@@ -87,7 +85,6 @@ TEST_P(BroadKernel, TouchingOverlaps) {
 
 /// Unions of tiles that only touch, from either side.
 TEST_P(BroadKernel, TouchingTilesOverlap) {
-    auto& on = device(GetParam());
     const auto scene = row_of_cubes(100);
     Search search(on, scene, {}, 32, 100);
     for (const std::size_t order : {0u, 1u}) {
@@ -101,7 +98,6 @@ TEST_P(BroadKernel, TouchingTilesOverlap) {
 }
 
 TEST_P(BroadKernel, FixedBodiesPairWithMovingOnesOnly) {
-    auto& on = device(GetParam());
     for (const std::uint32_t moving : {0u, 1u, 33u}) {
         auto scene = lattice(4);
         for (std::size_t i = moving; i < scene.bodies.size(); ++i) scene.bodies[i].fixed = true;
@@ -114,7 +110,6 @@ TEST_P(BroadKernel, FixedBodiesPairWithMovingOnesOnly) {
 }
 
 TEST_P(BroadKernel, OneBodyHasNoPairs) {
-    auto& on = device(GetParam());
     const auto scene = still_scene(one_tetrahedron(), {{Eigen::Vector3d(1, 2, 3)}});
     Search search(on, scene, {}, 32, 100);
     search.sort_by(0);
@@ -123,7 +118,6 @@ TEST_P(BroadKernel, OneBodyHasNoPairs) {
 }
 
 TEST_P(BroadKernel, NothingIsWrittenPastTheCapacity) {
-    auto& on = device(GetParam());
     const auto scene = gravel(9, 200, 6, 1000);
     Search search(on, scene, {}, 32, 100);
     search.sort_by(0);
@@ -141,8 +135,7 @@ TEST_P(BroadKernel, NothingIsWrittenPastTheCapacity) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices, BroadKernel, testing::ValuesIn(device_names()),
-                         [](const auto& test) { return device_label(test.param); });
+TANDEM_ON_DEVICES(BroadKernel);
 
 } // namespace
 } // namespace tandem

@@ -7,6 +7,7 @@
 #include "algorithms/bounds/geometry.h"
 #include "harness/verify/reference.h"
 #include "base/error.h"
+#include "tests/support/on_device.h"
 
 #include <fmt/format.h>
 
@@ -15,7 +16,7 @@ namespace {
 
 using namespace support;
 
-class BroadSessions : public testing::TestWithParam<std::string> {};
+class BroadSessions : public OnDevice {};
 
 bool rejected(const Traversal& traversal, std::span<Device* const> devices, const Settings& settings) {
     try {
@@ -28,7 +29,7 @@ bool rejected(const Traversal& traversal, std::span<Device* const> devices, cons
 
 /// Every preset with every broad phase gives the reference's answer, or is rejected with a reason.
 TEST_P(BroadSessions, EveryPresetWithEveryBroadPhase) {
-    auto& on = device(GetParam());
+    TANDEM_LONG_FORM_ONLY(GetParam());
     const auto scene = crowd(5, 12, 1.5);
     std::uint64_t cells = 0;
     for (const auto* traversal : algorithms()) {
@@ -85,9 +86,8 @@ Scene tetrahedra_on_a_line(std::initializer_list<double> positions) {
 /// pairs of such bodies are left out and counted, and none of them meets.
 TEST_P(BroadSessions, BoxesOfSpheresLeaveOutOnlyPairsThatDoNotMeet) {
     const auto scene = tetrahedra_on_a_line({0, 3.7, 1});
-    const std::array devices{&device(GetParam())};
     const auto settings_of_broad = [](const std::string& broad) {
-        return resolve(algorithm("chunked").parameters(), {}, {{"k", "8"}, {"broad", broad}}, "chunked");
+        return resolved(algorithm("chunked"), {{"k", "8"}, {"broad", broad}});
     };
     const auto boxes = settings_of_broad("sphere_boxes"), spheres = settings_of_broad("sphere");
     const auto geometry = geometry_of(boxes);
@@ -102,27 +102,27 @@ TEST_P(BroadSessions, BoxesOfSpheresLeaveOutOnlyPairsThatDoNotMeet) {
     EXPECT_GT(all.contacts, 0u);
     EXPECT_EQ(kept.contact_digest, all.contact_digest); // exact contacts of the same pairs
     EXPECT_EQ((reference(scene, frame, geometry, false, Method::brute_force, within).digest), kept.digest);
-    const auto result = algorithm("chunked").prepare(devices, scene, boxes)->run(frame);
-    const auto more = algorithm("chunked").prepare(devices, scene, spheres)->run(frame);
+    const auto result = prepare_on(on, algorithm("chunked"), scene, boxes)->run(frame);
+    const auto more = prepare_on(on, algorithm("chunked"), scene, spheres)->run(frame);
     EXPECT_EQ(result.digest(), kept.digest);
     EXPECT_EQ(more.digest(), all.digest);
     EXPECT_LT(result.body_pairs, more.body_pairs);
     // A walk that needs no body pairs asks for them where the broad phase leaves out some.
     const SettingTexts whole{{"k", "8"}, {"broad", "sphere_boxes"}, {"tree", "scene"}};
     const auto& leaf_query = algorithm("leaf_query");
-    const auto asked = resolve(leaf_query.parameters(), {}, whole, leaf_query.name());
-    EXPECT_EQ(leaf_query.prepare(devices, scene, asked)->run(frame).digest(), kept.digest);
+    const auto asked = resolved(leaf_query, whole);
+    EXPECT_EQ(prepare_on(on, leaf_query, scene, asked)->run(frame).digest(), kept.digest);
 }
 
 /// Parts of a frame's body pairs have together the frame's pairs, and each the reference's.
 TEST_P(BroadSessions, PartsOfAFrameAddUp) {
     const auto scene = crowd(5, 12, 1.5);
-    const std::array devices{&device(GetParam())};
+    const std::array devices{&on};
     const auto frame = scene.frame(0);
     const auto answer = [&](const SettingTexts& part) {
         SettingTexts given{{"broad", "sphere_boxes"}, {"residency", "published"}};
         given.insert(part.begin(), part.end());
-        const auto settings = resolve(algorithm("chunked").parameters(), {}, given, "chunked");
+        const auto settings = resolved(algorithm("chunked"), given);
         const auto expected = reference(scene, frame, geometry_of(settings), true, Method::brute_force,
                                         contact_settings_of(settings));
         auto result = algorithm("chunked").prepare(devices, scene, settings)->run(frame);
@@ -142,13 +142,12 @@ TEST_P(BroadSessions, PartsOfAFrameAddUp) {
     EXPECT_EQ(sum, whole);
     EXPECT_LT(middle.second.count, rest.second.count);
     EXPECT_EQ(answer({{"first_body_pair", "1000000"}}).first, 0u);
-    const auto wrong = resolve(algorithm("chunked").parameters(), {}, {{"most_body_pairs", "3"}}, "chunked");
+    const auto wrong = resolved(algorithm("chunked"), {{"most_body_pairs", "3"}});
     EXPECT_TRUE(rejected(algorithm("chunked"), devices, wrong));
 }
 
 /// A buffer that lacks one pair grows once; a buffer of exactly all pairs does not grow.
 TEST_P(BroadSessions, ACapacityOfExactlyTheBodyPairsNeedsNoRetry) {
-    auto& on = device(GetParam());
     const auto scene = crowd(8, 14, 1.5);
     const auto frame = scene.frame(0);
     const auto right = reference(scene, frame, {}, true, Method::brute_force);
@@ -158,11 +157,9 @@ TEST_P(BroadSessions, ACapacityOfExactlyTheBodyPairsNeedsNoRetry) {
     const auto pairs = search.expected().size();
     for (const auto* traversal : algorithms()) {
         for (const std::uint64_t capacity : {std::uint64_t{1}, pairs - 1, pairs}) {
-            const auto settings = resolve(
-                traversal->parameters(), {},
-                {{"broad", "device"}, {"body_pair_capacity", std::to_string(capacity)}}, traversal->name());
-            const std::array devices{&on};
-            const auto session = traversal->prepare(devices, scene, settings);
+            const auto session =
+                prepare_on(on, *traversal, scene,
+                           {{"broad", "device"}, {"body_pair_capacity", std::to_string(capacity)}});
             const auto result = session->run(frame);
             EXPECT_EQ(result.body_pairs, pairs);
             EXPECT_EQ(result.retries, capacity < pairs ? 1u : 0u);
@@ -174,16 +171,13 @@ TEST_P(BroadSessions, ACapacityOfExactlyTheBodyPairsNeedsNoRetry) {
 
 /// Explicit body pairs replace those of any broad phase, for that run only.
 TEST_P(BroadSessions, ExplicitPairsReplaceTheBroadPhase) {
-    auto& on = device(GetParam());
     const auto scene = crowd(8, 6, 0.5);
     const auto frame = scene.frame(0);
     const auto right = reference(scene, frame, {}, true, Method::brute_force);
     const BodyPair first{right.pairs.front().body_a, right.pairs.front().body_b};
     for (const auto* traversal : algorithms())
         for (const std::string broad : {"device", "tight"}) {
-            const auto settings = resolve(traversal->parameters(), {}, {{"broad", broad}}, traversal->name());
-            const std::array devices{&on};
-            const auto session = traversal->prepare(devices, scene, settings);
+            const auto session = prepare_on(on, *traversal, scene, {{"broad", broad}});
             EXPECT_EQ(session->run(frame).digest(), right.digest);
             for (const auto& pair : session->run(frame, {&first, 1}).download())
                 EXPECT_EQ((BodyPair{pair.body_a, pair.body_b}), first);
@@ -196,12 +190,9 @@ TEST_P(BroadSessions, ExplicitPairsReplaceTheBroadPhase) {
 /// The commands of a resident chunked frame: the same for frames with different answers, with one wait; the
 /// trace lists the search under the broad stage.
 TEST_P(BroadSessions, ResidentChunkedIsOneSequence) {
-    auto& on = device(GetParam());
     const auto scene = gravel(10, 300, 5, 1000);
     const auto& traversal = algorithm("chunked");
-    const auto settings = resolve(traversal.parameters(), {}, {{"broad", "device"}}, traversal.name());
-    const std::array devices{&on};
-    const auto session = traversal.prepare(devices, scene, settings);
+    const auto session = prepare_on(on, traversal, scene, {{"broad", "device"}});
     session->run(scene.frame(0)); // the first run sorts the bodies
     on.set_clocks(Clocks::on);
     std::vector<std::vector<std::string>> sequences;
@@ -226,8 +217,7 @@ TEST_P(BroadSessions, ResidentChunkedIsOneSequence) {
     EXPECT_EQ(sequences[0], sequences[1]);
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices, BroadSessions, testing::ValuesIn(device_names()),
-                         [](const auto& test) { return device_label(test.param); });
+TANDEM_ON_DEVICES(BroadSessions);
 
 } // namespace
 } // namespace tandem

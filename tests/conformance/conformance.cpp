@@ -2,14 +2,12 @@
 // Every algorithm and preset against brute force, on the host and on OpenCL, over a pairwise covering array
 // of settings and group sizes. The tests iterate the list of algorithms, so they cover new entries
 // automatically.
-#include "tests/support/cells.h"
+#include "tests/support/on_device.h"
+#include "tests/support/long_form.h"
 #include "tests/support/sanitized.h"
 #include "tests/support/scenes.h"
+#include "tests/support/test.h"
 #include "base/error.h"
-
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-#include <set>
 
 namespace tandem {
 namespace {
@@ -150,7 +148,7 @@ SettingTexts fitted(const Traversal& traversal, Device& on, SettingTexts row) {
     const std::array devices{&on};
     for (;;) {
         try {
-            traversal.check(devices, resolve(traversal.parameters(), {}, row, traversal.name()));
+            traversal.check(devices, resolved(traversal, row));
             return row;
         } catch (const InputError& error) {
             const auto size = std::stoi(row.at("group_size"));
@@ -165,9 +163,8 @@ SettingTexts fitted(const Traversal& traversal, Device& on, SettingTexts row) {
 void expect_right(Device& on, const Traversal& traversal, const Scene& scene, const SettingTexts& given,
                   std::uint64_t& pairs, std::uint64_t& contacts) {
     SCOPED_TRACE(fmt::format("{} on {}:{}", traversal.name(), on.info().id, text(given)));
-    const auto settings = resolve(traversal.parameters(), {}, given, traversal.name());
-    const std::array devices{&on};
-    const auto session = traversal.prepare(devices, scene, settings);
+    const auto settings = resolved(traversal, given);
+    const auto session = prepare_on(on, traversal, scene, settings);
     const auto geometry = geometry_of(settings);
     for (std::size_t i = 0; i < scene.frame_count; ++i) {
         const auto frame = scene.frame(i);
@@ -189,7 +186,7 @@ void expect_right(Device& on, const Traversal& traversal, const Scene& scene, co
     on.finish();
 }
 
-class Conformance : public testing::TestWithParam<std::string> {};
+class Conformance : public OnDevice {};
 
 /// A device and a part of the rows: compilation takes most of the time, and parts can run in parallel.
 class CoveringArray : public testing::TestWithParam<std::tuple<std::string, std::size_t>> {
@@ -221,6 +218,7 @@ TEST_P(CoveringArray, Gproximity) { cover("gproximity", 200, 4); }
 TEST_P(CoveringArray, Tiled) { cover("tiled", 400, 7); }
 TEST_P(CoveringArray, LeafQuery) { cover("leaf_query", 500, 7); }
 TEST_P(CoveringArray, EveryOther) {
+    TANDEM_LONG_FORM_ONLY(std::get<0>(GetParam()));
     const std::set<std::string_view> own{"chunked", "gproximity", "tiled", "leaf_query",
                                          "leaf_query_scene"}; // leaf_query covers both of its trees
     for (const auto* traversal : algorithms())
@@ -228,7 +226,6 @@ TEST_P(CoveringArray, EveryOther) {
 }
 
 TEST_P(Conformance, EveryPreset) {
-    auto& on = device(GetParam());
     const auto scene = crowd(5, 9, 0.9);
     std::uint64_t cells = 0;
     for (const auto* traversal : algorithms()) {
@@ -249,17 +246,13 @@ TEST_P(Conformance, EveryPreset) {
 }
 
 TEST_P(Conformance, CountAndDigestModesAgreeWithPairs) {
-    auto& on = device(GetParam());
     const auto scene = crowd(11, 8, 0.8);
     const auto frame = scene.frame(1);
     for (const auto* traversal : algorithms()) {
         const auto expected = reference(scene, frame, {}, false, Method::brute_force);
         ASSERT_GT(expected.digest.count, 0u);
         for (const std::string output : {"count", "digest"}) {
-            const auto settings =
-                resolve(traversal->parameters(), {}, {{"output", output}}, traversal->name());
-            const std::array devices{&on};
-            const auto session = traversal->prepare(devices, scene, settings);
+            const auto session = prepare_on(on, *traversal, scene, {{"output", output}});
             const auto result = run_among_all(*session, scene, frame);
             EXPECT_EQ(result.count, expected.digest.count);
             if (output == "digest") {
@@ -270,33 +263,26 @@ TEST_P(Conformance, CountAndDigestModesAgreeWithPairs) {
 }
 
 TEST_P(Conformance, EmptyAnswerIsEmpty) {
-    auto& on = device(GetParam());
     auto scene = crowd(3, 4, 0.5);
     auto frame = scene.frame(0);
     for (std::size_t i = 0; i < frame.poses.size(); ++i)
         frame.poses[i].translation = Eigen::Vector3d(10.0 * static_cast<double>(i + 1), 0, 0);
     for (const auto* traversal : algorithms()) {
-        const auto settings = resolve(traversal->parameters(), {}, {}, traversal->name());
-        const std::array devices{&on};
-        const auto session = traversal->prepare(devices, scene, settings);
+        const auto session = prepare_on(on, *traversal, scene);
         EXPECT_EQ(run_among_all(*session, scene, frame).count, 0u);
         EXPECT_EQ(session->run(frame, {}).count, 0u);
     }
 }
 
 TEST_P(Conformance, CapacityOfExactlyTheAnswerNeedsNoRetry) {
-    auto& on = device(GetParam());
     const auto scene = crowd(21, 8, 0.8);
     const auto frame = scene.frame(0);
     const auto expected = reference(scene, frame, {}, true, Method::brute_force);
     for (const auto* traversal : algorithms()) {
         for (const std::uint64_t less : {0u, 1u}) {
-            const auto settings = resolve(traversal->parameters(), {},
-                                          {{"pair_capacity", std::to_string(expected.digest.count - less)},
-                                           {"contact_capacity", std::to_string(expected.contacts - less)}},
-                                          traversal->name());
-            const std::array devices{&on};
-            const auto session = traversal->prepare(devices, scene, settings);
+            const auto session = prepare_on(on, *traversal, scene,
+                                            {{"pair_capacity", std::to_string(expected.digest.count - less)},
+                                             {"contact_capacity", std::to_string(expected.contacts - less)}});
             const auto result = run_among_all(*session, scene, frame);
             EXPECT_EQ(result.retries > 0, less > 0);
             EXPECT_EQ(result.digest(), expected.digest);
@@ -306,13 +292,10 @@ TEST_P(Conformance, CapacityOfExactlyTheAnswerNeedsNoRetry) {
 }
 
 TEST_P(Conformance, TenRunsGiveTheSameSet) {
-    auto& on = device(GetParam());
     const auto scene = crowd(31, 10, 0.9);
     const auto frame = scene.frame(0);
     for (const auto* traversal : algorithms()) {
-        const auto settings = resolve(traversal->parameters(), {}, {}, traversal->name());
-        const std::array devices{&on};
-        const auto session = traversal->prepare(devices, scene, settings);
+        const auto session = prepare_on(on, *traversal, scene);
         const auto first = run_among_all(*session, scene, frame).download();
         ASSERT_FALSE(first.empty());
         for (int i = 1; i < 10; ++i) EXPECT_EQ(run_among_all(*session, scene, frame).download(), first);
@@ -324,13 +307,10 @@ TEST_P(Conformance, TenRunsGiveTheSameSet) {
 TEST_P(Conformance, RepeatedSessionsAtTheSameAddresses) {
     const auto scene = crowd(48, 6, 0.8);
     const auto right = reference(scene, scene.frame(0), {}, true, Method::brute_force);
-    const std::array devices{&device(GetParam())};
     for (const auto* traversal : algorithms())
         for (int i = 0; i < 3; ++i) {
             SCOPED_TRACE(traversal->name());
-            const auto session = traversal->prepare(
-                devices, scene,
-                resolve(traversal->parameters(), {}, {{"broad", "device"}}, traversal->name()));
+            const auto session = prepare_on(on, *traversal, scene, {{"broad", "device"}});
             for (int run = 0; run < 4; ++run) {
                 const auto result = session->run(scene.frame(0));
                 EXPECT_EQ(result.digest(), right.digest);
@@ -339,15 +319,17 @@ TEST_P(Conformance, RepeatedSessionsAtTheSameAddresses) {
         }
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices, Conformance, testing::ValuesIn(device_names()),
-                         [](const auto& test) { return device_label(test.param); });
+TANDEM_ON_DEVICES(Conformance);
 
 INSTANTIATE_TEST_SUITE_P(Devices, CoveringArray,
                          testing::Combine(testing::ValuesIn(device_names()),
                                           testing::Range<std::size_t>(0, CoveringArray::parts)),
                          [](const auto& test) {
-                             return fmt::format("{}Part{}", device_label(std::get<0>(test.param)),
-                                                std::get<1>(test.param));
+                             const auto device_id = std::get<0>(test.param);
+                             const auto part = std::get<1>(test.param);
+                             const bool is_long = part != 0 && device_id != "host";
+                             return fmt::format("{}{}Part{}", device_label(device_id),
+                                                is_long ? "OnlyLong" : "", part);
                          });
 
 } // namespace

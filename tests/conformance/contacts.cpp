@@ -4,12 +4,11 @@
 #include "algorithms/narrow_phase/contact_settings.h"
 #include "harness/verify/oracle/frame_truth.h"
 #include "scenes/builtin.h"
-#include "tests/support/cells.h"
+#include "tests/support/on_device.h"
 #include "tests/support/oracle_nested.h"
 #include "tests/support/oracle_pairs.h"
 #include "tests/support/scenes.h"
-
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
 namespace tandem {
 namespace {
@@ -59,17 +58,14 @@ Scene nested_pairs() {
     return bodies_of("nested pairs", tetrahedra);
 }
 
-class ContactConformance : public testing::TestWithParam<std::string> {
+class ContactConformance : public OnDevice {
 protected:
-    Device& on = device(GetParam());
     Scene scene = make_scene("colosseum:slices=3,layers=1");
     Frame frame = scene.frame(0);
 
     std::unique_ptr<Session> prepare(const std::string& algorithm_name, const SettingTexts& given) const {
         const auto& traversal = algorithm(algorithm_name);
-        const std::array devices{&on};
-        return traversal.prepare(devices, scene,
-                                 resolve(traversal.parameters(), {}, given, traversal.name()));
+        return prepare_on(on, traversal, scene, given);
     }
 
     /// Runs the frame and compares it with the reference.
@@ -97,17 +93,13 @@ TEST_P(ContactConformance, EveryDecisionEqualsTheReferenceInEveryResidency) {
     EXPECT_GT(recheck.undecided_by_double, 100u);
     EXPECT_LE(recheck.undecided_by_double, recheck.undecided_by_filter);
     expect_right("gproximity", {{"decision", "fp64"}, {"contact_rule", "clip"}});
-    const auto exact = expect_right("gproximity", {{"decision", "exact"},
-                                                   {"contact_rule", "published"},
-                                                   {"pair_capacity", "1"},
-                                                   {"contact_capacity", "1"}});
+    const auto exact = expect_right(
+        "gproximity", texts("decision=exact contact_rule=published pair_capacity=1 contact_capacity=1"));
     EXPECT_GT(exact.retries, 0u);
     expect_right("chunked", {{"decision", "exact"}, {"precision", "double"}});
     for (const std::string decision : {"recheck", "exact"})
-        expect_right("chunked", {{"decision", decision},
-                                 {"contact_rule", "sat"},
-                                 {"residency", "published"},
-                                 {"seed_threshold", "1"}});
+        expect_right("chunked",
+                     texts("contact_rule=sat residency=published seed_threshold=1 decision=" + decision));
     const auto all = expect_right("chunked", {{"decision", "none"}, {"contact_rule", "published"}});
     EXPECT_EQ(all.rejected, 0u);
     const SettingTexts rejecting{{"contact_rule", "published"}, {"residency", "published"}};
@@ -173,8 +165,7 @@ TEST_P(ContactConformance, OnlyExactWaitsForTheHost) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices, ContactConformance, testing::ValuesIn(device_names()),
-                         [](const auto& test) { return device_label(test.param); });
+TANDEM_ON_DEVICES(ContactConformance);
 
 } // namespace
 } // namespace tandem

@@ -6,14 +6,12 @@
 #include "algorithms/bodies/pack_stage.h"
 #include "algorithms/bodies/range.h"
 #include "base/quaternion.h"
-#include "tests/support/cells.h"
+#include "tests/support/message_of.h"
+#include "tests/support/on_device.h"
 #include "tests/support/frames_there.h"
+#include "tests/support/long_form.h"
 #include "tests/support/scenes.h"
-
-#include <cmath>
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
 namespace tandem {
 namespace {
@@ -21,24 +19,11 @@ namespace {
 using namespace support;
 using ::testing::HasSubstr;
 
-/// Message of the InputError of `work`; empty if there is none.
-template<class Work>
-std::string rejection(const Work& work) {
-    try {
-        work();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "";
-}
-
-class DeviceFrames : public testing::TestWithParam<std::string> {
+class DeviceFrames : public OnDevice {
 protected:
     std::unique_ptr<Session> prepare(std::string_view name, const Scene& scene, const SettingTexts& given) {
-        const std::array devices{&on};
         const auto& traversal = algorithm(name);
-        return traversal.prepare(devices, scene,
-                                 resolve(traversal.parameters(), {}, given, traversal.name()));
+        return prepare_on(on, traversal, scene, given);
     }
 
     static void expect_equal(const FrameResult& result, const FrameResult& right) {
@@ -73,8 +58,6 @@ protected:
         on.download(from, std::as_writable_bytes(std::span(values)));
         return values;
     }
-
-    Device& on = device(GetParam());
 };
 
 TEST_P(DeviceFrames, GiveTheAnswerOfFramesInHostMemory) {
@@ -107,7 +90,7 @@ TEST_P(DeviceFrames, DecideTheOriginOfTheSession) {
     for (const double x : {1e5, 0.0, -3e6}) {
         const Rows rows(moved(scene, {x, 0, 0}).frame(0), false);
         const Rows flawed(moved(scene, {2e37, 0, 0}).frame(0), false);
-        EXPECT_NE(rejection([&] { from_device->run(flawed.uploaded_to(on)); }), "");
+        EXPECT_NE(message_of([&] { from_device->run(flawed.uploaded_to(on)); }), "no error");
         const auto right = from_host->run(rows.host);
         expect_equal(from_device->run(rows.uploaded_to(on)), right);
         EXPECT_EQ(from_device->origin(), from_host->origin());
@@ -139,6 +122,7 @@ TEST_P(DeviceFrames, IgnoreSkippedTetrahedra) {
 
 /// Every buffer starts with one row, and memory is so limited that the frame runs in batches.
 TEST_P(DeviceFrames, RunWithRetriesAndInBatches) {
+    TANDEM_LONG_FORM_ONLY(GetParam());
     const auto scene = crowd(6, 16, 1.5);
     const SettingTexts least{{"pair_capacity", "1"}, {"contact_capacity", "1"}, {"body_pair_capacity", "1"}};
     const Rows rows(scene.frame(0), false);
@@ -222,20 +206,20 @@ TEST_P(DeviceFrames, OutOfRangeValuesGiveTheErrorsOfTheHost) {
         else
             rows.poses[static_cast<std::size_t>(at)] = value;
         const auto frame = rows.uploaded_to(on);
-        EXPECT_THAT(rejection([&] { session->run(frame); }), HasSubstr(words));
-        EXPECT_EQ(rejection([&] {
+        EXPECT_THAT(message_of([&] { session->run(frame); }), HasSubstr(words));
+        EXPECT_EQ(message_of([&] {
                       for (std::size_t body = 0; body < scene.bodies.size(); ++body)
                           if (!scene.bodies[body].deformable)
                               rows.host.poses[body] = pose_of_row(&rows.poses[7 * body], body);
                       check_range(scene, rows.host, Precision::fp32);
                   }),
-                  rejection([&] { session->run(frame); }));
+                  message_of([&] { session->run(frame); }));
         expect_equal(session->run(Rows(scene.frame(0), false).uploaded_to(on)), good);
     }
     for (int i = 3; i < 7; ++i) {
         Rows rows(scene.frame(0), false);
         for (std::size_t j = 3; j < 7; ++j) rows.poses[7 * 4 + j] = 0;
-        EXPECT_THAT(rejection([&] { session->run(rows.uploaded_to(on)); }),
+        EXPECT_THAT(message_of([&] { session->run(rows.uploaded_to(on)); }),
                     HasSubstr("poses: row 4 has no rotation"));
     }
 }
@@ -245,7 +229,7 @@ TEST_P(DeviceFrames, AreRejectedInOneLineWhereTheHostNeedsThem) {
     const auto frame = Rows(scene.frame(0), false).uploaded_to(on);
     const auto rejection_with = [&](const SettingTexts& given) {
         const auto session = prepare("chunked", scene, given);
-        return rejection([&] { session->run(frame); });
+        return message_of([&] { session->run(frame); });
     };
     EXPECT_THAT(rejection_with({{"residency", "published"}, {"broad", "sphere"}}),
                 HasSubstr("residency=published converts every frame"));
@@ -254,7 +238,7 @@ TEST_P(DeviceFrames, AreRejectedInOneLineWhereTheHostNeedsThem) {
     const auto without = [&](const auto& change) {
         auto changed = frame;
         change(changed);
-        return rejection([&] { session->run(changed); });
+        return message_of([&] { session->run(changed); });
     };
     EXPECT_THAT(without([](auto& f) { f.deformed[1] = {}; }),
                 HasSubstr("vertices of body 1: a buffer of 0 bytes"));
@@ -262,15 +246,14 @@ TEST_P(DeviceFrames, AreRejectedInOneLineWhereTheHostNeedsThem) {
                 HasSubstr("0 entries of vertices for 6 bodies"));
     EXPECT_THAT(without([&](auto& f) { f.poses.buffer = on.allocate(80, "few"); }),
                 HasSubstr("poses: a buffer of 80 bytes"));
-    EXPECT_EQ(without([](auto& f) { f.poses = {}; }), "") << "all at the identity";
+    EXPECT_EQ(without([](auto& f) { f.poses = {}; }), "no error") << "all at the identity";
     const std::array both{&device("host"), &device("opencl:0")};
     const auto& tiled = algorithm("tiled");
-    const auto split = tiled.prepare(both, scene, resolve(tiled.parameters(), {}, {}, "tiled"));
-    EXPECT_THAT(rejection([&] { split->run(frame); }), HasSubstr("several devices share a frame"));
+    const auto split = tiled.prepare(both, scene, resolved(tiled));
+    EXPECT_THAT(message_of([&] { split->run(frame); }), HasSubstr("several devices share a frame"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices, DeviceFrames, testing::ValuesIn(device_names()),
-                         [](const auto& each) { return device_label(each.param); });
+TANDEM_ON_DEVICES(DeviceFrames);
 
 } // namespace
 } // namespace tandem

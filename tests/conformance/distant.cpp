@@ -7,8 +7,8 @@
 #include "tests/support/limited.h"
 #include "tests/support/long_form.h"
 #include "tests/support/scenes.h"
-
-#include <gtest/gtest.h>
+#include "tests/support/on_device.h"
+#include "tests/support/test.h"
 
 namespace tandem {
 namespace {
@@ -24,7 +24,7 @@ ReferenceAnswer right_for(const Session& session, const Scene& scene, const Fram
                      true, Method::brute_force, contact_settings_of(session.settings()));
 }
 
-class DistantMeshes : public testing::TestWithParam<std::string> {
+class DistantMeshes : public OnDevice {
 protected:
     /// All algorithms; on other devices than the host, where compilation takes long, one of each hierarchy.
     static std::vector<const Traversal*> walks() {
@@ -32,7 +32,6 @@ protected:
         return {algorithms().begin(), algorithms().end()};
     }
 
-    Device& on = device(GetParam());
     Scene scene_ = with_distant_meshes(crowd(11, 9, 2), {2e6, 3e4, 0});
     Frame frame_ = scene_.frame(0), next_ = scene_.frame(1);
 };
@@ -149,8 +148,7 @@ TEST_P(DistantMeshes, MissNothingOnArcsAboutTheirOrigins) {
     EXPECT_GT(met, 40u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices, DistantMeshes, testing::ValuesIn(device_names()),
-                         [](const auto& test) { return device_label(test.param); });
+TANDEM_ON_DEVICES(DistantMeshes);
 
 /// Two devices share the bodies, whose arcs exceed the skins of the first partition.
 TEST(SharedDistantMeshes, GiveTheAnswerOfTheReference) {
@@ -158,8 +156,8 @@ TEST(SharedDistantMeshes, GiveTheAnswerOfTheReference) {
     const std::array devices{&device("host"), &device("opencl:0")};
     for (const std::string broad : {"device", "tight"}) {
         const auto& tiled = algorithm("tiled");
-        const auto session = tiled.prepare(
-            devices, scene, resolve(tiled.parameters(), {}, {{"broad", broad}, {"origin", "auto"}}, "tiled"));
+        const auto session =
+            tiled.prepare(devices, scene, resolved(tiled, {{"broad", broad}, {"origin", "auto"}}));
         for (const std::size_t i : {0u, 1u, 3u}) {
             const auto right = right_for(*session, scene, scene.frame(i));
             const auto result = session->run(scene.frame(i));

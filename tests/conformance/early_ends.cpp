@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Frames that a caller ends at a launch: no later launch begins, and the next frame has its answer.
-#include "tests/support/cells.h"
+#include "tests/support/on_device.h"
 #include "tests/support/limited.h"
 #include "tests/support/scenes.h"
-
-#include <fmt/format.h>
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
 namespace tandem {
 namespace {
@@ -15,7 +13,7 @@ using namespace support;
 /// Not derived from std::exception, so that nothing takes it for an error.
 struct Ended {};
 
-class EarlyEnds : public testing::TestWithParam<std::string> {
+class EarlyEnds : public OnDevice {
 protected:
     /// Runs a frame that ends at launch number `last`, or as a whole if it has fewer. Returns its launches.
     std::size_t run_until(Session& session, const Frame& frame, std::size_t last) {
@@ -35,7 +33,6 @@ protected:
     }
     void end_everywhere(const Traversal& traversal, const SettingTexts& given);
 
-    Device& on = device(GetParam());
     const Scene scene = crowd(3, 5, 0.9);
 };
 
@@ -75,8 +72,7 @@ TEST_P(EarlyEnds, LeaveAFirstFrameToTheNext) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices, EarlyEnds, testing::ValuesIn(device_names()),
-                         [](const auto& test) { return device_label(test.param); });
+TANDEM_ON_DEVICES(EarlyEnds);
 
 } // namespace
 } // namespace tandem

@@ -2,9 +2,8 @@
 // A session that runs for days: memory of the process does not grow from frame to frame.
 #include "tests/support/cells.h"
 #include "tests/support/scenes.h"
+#include "tests/support/test.h"
 
-#include <fstream>
-#include <gtest/gtest.h>
 #include <unistd.h>
 
 namespace tandem {
@@ -25,11 +24,9 @@ std::int64_t resident_bytes() {
 void expect_flat_memory(const std::string& on, std::size_t frames) {
     const auto scene = crowd(3, 5, 2.2); // a few pairs
     for (const auto* traversal : algorithms()) {
-        const std::array devices{&device(on)};
         SettingTexts given{{"pair_capacity", "4096"}, {"contact_capacity", "4096"}, {"work_items", "64"}};
         if (declares(*traversal, "queue_bytes")) given["queue_bytes"] = "65536";
-        const auto settings = resolve(traversal->parameters(), {}, given, traversal->name());
-        const auto session = traversal->prepare(devices, scene, settings);
+        const auto session = prepare_on(device(on), *traversal, scene, given);
         const std::vector<Frame> poses{scene.frame(0), scene.frame(1)};
         FrameResult kept;
         std::uint64_t pairs = 0;
@@ -50,7 +47,7 @@ void expect_flat_memory(const std::string& on, std::size_t frames) {
 TEST(Endurance, ThousandsOfFramesLeaveMemoryFlat) { expect_flat_memory("host", 2500); }
 
 /// On every device; fewer frames where each needs kernel launches.
-TEST(EnduranceLong, AHundredThousandFramesLeaveMemoryFlat) {
+TEST(Endurance, AHundredThousandFramesLeaveMemoryFlatOnlyLong) {
     for (const auto& on : device_names()) expect_flat_memory(on, on == "host" ? 100000 : 20000);
 }
 

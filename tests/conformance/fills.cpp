@@ -6,10 +6,10 @@
 #include "tests/support/long_form.h"
 #include "tests/support/scenes.h"
 #include "algorithms/pipeline/pipeline.h"
+#include "tests/support/on_device.h"
+#include "tests/support/test.h"
 
 #include <deque>
-#include <fmt/format.h>
-#include <gtest/gtest.h>
 
 namespace tandem {
 namespace {
@@ -130,12 +130,11 @@ struct Seen {
     std::uint64_t frames = 0, retries = 0, batches = 0, contacts = 0;
 };
 
-class Fills : public testing::TestWithParam<std::string> {
+class Fills : public OnDevice {
 protected:
     /// Runs the scene's frames, and the first one again, each with filled buffers.
     void expect_right(const Traversal& traversal, const SettingTexts& row, std::uint64_t seed);
 
-    Device& on = device(GetParam());
     Seen seen;
 
 private:
@@ -188,13 +187,12 @@ void Fills::expect_right(const Traversal& traversal, const SettingTexts& row, st
     const auto scene = moving_crowd(seed % 3);
     const auto given = settings_of(traversal, row, random);
     const auto word = static_cast<std::uint32_t>(std::stoul(row.at("word"), nullptr, 16));
-    const auto settings = resolve(traversal.parameters(), {}, given, traversal.name());
+    const auto settings = resolved(traversal, given);
     std::optional<Limited> limit;
     if (row.at("memory") == "little") // the published path needs room for all of its seeds
         limit.emplace(on,
                       least_bytes(on, traversal, scene, given) + (is_published(settings) ? 3000000 : 150000));
-    const std::array devices{&on};
-    const auto session = traversal.prepare(devices, scene, settings);
+    const auto session = prepare_on(on, traversal, scene, settings);
     for (const std::size_t i : {0, 1, 0}) {
         const auto& right = right_for(seed % 3, scene, i, settings);
         const auto frame = scene.frame(i);
@@ -233,8 +231,7 @@ TEST_P(Fills, NothingIsReadBeforeItIsWritten) {
                seen.retries, seen.batches, GetParam());
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices, Fills, testing::ValuesIn(device_names()),
-                         [](const auto& test) { return device_label(test.param); });
+TANDEM_ON_DEVICES(Fills);
 
 } // namespace
 } // namespace tandem

@@ -4,9 +4,8 @@
 #include "tests/support/long_form.h"
 #include "tests/support/scenes.h"
 #include "harness/verify/reference.h"
-
-#include <fmt/format.h>
-#include <gtest/gtest.h>
+#include "tests/support/on_device.h"
+#include "tests/support/test.h"
 
 namespace tandem {
 namespace {
@@ -49,13 +48,11 @@ std::vector<Pair> kept(const Scene& scene, std::vector<Pair> pairs) {
     return pairs;
 }
 
-class Filters : public testing::TestWithParam<std::string> {
-protected:
-    Device& on = device(GetParam());
-};
+class Filters : public OnDevice {};
 
 /// More bodies than the device's broad phase has in a tile.
 TEST_P(Filters, KeepBodiesApartInEveryBroadPhase) {
+    TANDEM_LONG_FORM_ONLY(GetParam());
     const auto whole = crowd(61, 90, 2);
     const auto scene = filtered(whole, 3);
     for (const auto* traversal : algorithms())
@@ -77,9 +74,9 @@ TEST_P(Filters, KeepBodiesApartInEveryBroadPhase) {
 TEST_P(Filters, DoNotApplyToGivenPairs) {
     auto scene = crowd(62, 4, 0.5);
     const auto pairs = all_pairs(scene);
-    const auto expected = prepare_on(on, algorithm("tiled"), scene, {})->run(scene.frame(0), pairs).digest();
+    const auto expected = prepare_on(on, algorithm("tiled"), scene)->run(scene.frame(0), pairs).digest();
     for (auto& body : scene.bodies) body.meets = 0;
-    const auto session = prepare_on(on, algorithm("tiled"), scene, {});
+    const auto session = prepare_on(on, algorithm("tiled"), scene);
     EXPECT_EQ(session->run(scene.frame(0), pairs).digest(), expected);
     EXPECT_EQ(session->run(scene.frame(0)).count, 0u);
 }
@@ -102,8 +99,7 @@ TEST(FilteredParts, OfTwoDevicesAddUp) {
     for (const std::string broad : {"device", "tight"}) {
         SCOPED_TRACE(broad);
         const auto& tiled = algorithm("tiled");
-        const auto settings =
-            resolve(tiled.parameters(), {}, {{"broad", broad}, {"self", "on"}}, tiled.name());
+        const auto settings = resolved(tiled, {{"broad", broad}, {"self", "on"}});
         const auto one = tiled.prepare(std::span(both).first(1), scene, settings);
         const auto two = tiled.prepare(both, scene, settings);
         for (const std::size_t i : {0u, 1u}) {
@@ -116,8 +112,7 @@ TEST(FilteredParts, OfTwoDevicesAddUp) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices, Filters, testing::ValuesIn(device_names()),
-                         [](const auto& test) { return device_label(test.param); });
+TANDEM_ON_DEVICES(Filters);
 
 } // namespace
 } // namespace tandem

@@ -8,10 +8,9 @@
 #include "tests/support/flawed.h"
 #include "tests/support/frames_there.h"
 #include "tests/support/limited.h"
-
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/long_form.h"
+#include "tests/support/on_device.h"
+#include "tests/support/test.h"
 
 namespace tandem {
 namespace {
@@ -44,10 +43,8 @@ std::vector<Frame> frames_with_gaps(const Scene& scene) {
     return frames;
 }
 
-class Interior : public testing::TestWithParam<std::string> {
+class Interior : public OnDevice {
 protected:
-    Device& on = device(GetParam());
-
     std::unique_ptr<Session> prepare(const Traversal& traversal, const Scene& scene, SettingTexts given,
                                      const std::string& output) const {
         given["output"] = output;
@@ -96,6 +93,7 @@ TEST_P(Interior, MakesTheSameContactsWithEveryAlgorithm) {
 }
 
 TEST_P(Interior, MakesTheSameContactsWithEverySetting) {
+    TANDEM_LONG_FORM_ONLY(GetParam());
     const auto scene = boxes_scene(3, 4);
     std::size_t cell = 0;
     for (const std::string builder : {"morton", "sah", "breadth", "hilbert", "median", "balanced"})
@@ -182,8 +180,7 @@ TEST_P(Interior, IsAnErrorWithoutAContactRule) {
         testing::ThrowsMessage<InputError>(testing::HasSubstr("needs a contact rule")));
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices, Interior, testing::ValuesIn(device_names()),
-                         [](const auto& test) { return device_label(test.param); });
+TANDEM_ON_DEVICES(Interior);
 
 /// Each device has its part of the bodies.
 TEST(InteriorOfParts, MakesTheSameContactsOnTwoDevices) {
@@ -193,8 +190,7 @@ TEST(InteriorOfParts, MakesTheSameContactsOnTwoDevices) {
     for (const auto* traversal : algorithms()) {
         SCOPED_TRACE(traversal->name());
         const auto settings = [&](const std::string& output) {
-            return resolve(traversal->parameters(), {}, {{"broad", "device"}, {"output", output}},
-                           traversal->name());
+            return resolved(*traversal, {{"broad", "device"}, {"output", output}});
         };
         const auto fewer = traversal->prepare(both, scene, settings("contacts"));
         const auto all = traversal->prepare(one, scene, settings("pairs"));

@@ -2,16 +2,11 @@
 // Sizes at which levels, chunks, groups and tiles turn: bodies of 1 to 20,000 tetrahedra, and 1 to 3,000
 // bodies, by every algorithm and preset, with pairs of one body, a successor, and filters. Candidate pairs
 // are those of an independent sweep.
-#include "tests/support/cells.h"
+#include "tests/support/on_device.h"
 #include "tests/support/long_form.h"
 #include "tests/support/scenes.h"
+#include "tests/support/test.h"
 #include "base/error.h"
-
-#include <cmath>
-#include <fmt/format.h>
-#include <functional>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace tandem {
 namespace {
@@ -88,13 +83,12 @@ struct Mode {
 const std::vector<Mode> modes{{"off", "none"},  {"on", "none"},       {"off", "linear"},
                               {"on", "linear"}, {"on", "none", true}, {"off", "none", true}};
 
-class Ladder : public testing::TestWithParam<std::string> {
+class Ladder : public OnDevice {
 protected:
     /// Whether to run a preset: number of the algorithm, of the preset in it, and of the preset in all.
     using Chosen = std::function<bool(std::size_t algorithm, std::size_t preset, std::size_t number)>;
     void expect_right(const Scene& scene, const Mode& mode, const Chosen& chosen);
 
-    Device& on = device(GetParam());
     std::uint64_t cells = 0, frames = 0, pairs = 0;
     std::set<std::string> refused; ///< presets and modes that exclude each other, with the reason
 
@@ -128,9 +122,7 @@ void Ladder::expect_right(const Traversal& traversal, const Preset& preset, cons
         fmt::format("{} {} self={} motion={}", traversal.name(), preset.name, mode.self, mode.motion);
     std::unique_ptr<Session> session;
     try {
-        const std::array devices{&on};
-        session =
-            traversal.prepare(devices, scene, resolve(traversal.parameters(), {}, given, traversal.name()));
+        session = prepare_on(on, traversal, scene, given);
     } catch (const InputError& error) {
         refused.insert(fmt::format("{}: {}", name, error.what()));
         return;
@@ -162,7 +154,7 @@ void Ladder::expect_right(const Scene& scene, const Mode& mode, const Chosen& ch
 /// In short form every second size has pairs of one body, by the first preset of every second algorithm, and
 /// the others a mode and a sixth of all presets in turn. Devices other than the host have a sixth of the
 /// sizes.
-TEST_P(Ladder, EverySizeHasThePairsOfASweep) {
+TEST_P(Ladder, EverySizeHasThePairsOfASweepLong) {
     struct Step {
         std::uint32_t bodies, count;
     };
@@ -192,8 +184,7 @@ TEST_P(Ladder, EverySizeHasThePairsOfASweep) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices, Ladder, testing::ValuesIn(device_names()),
-                         [](const auto& test) { return device_label(test.param); });
+TANDEM_ON_DEVICES(Ladder);
 
 } // namespace
 } // namespace tandem

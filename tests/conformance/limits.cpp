@@ -8,8 +8,8 @@
 #include "tests/support/cells.h"
 #include "tests/support/flawed.h"
 #include "tests/support/prepared_trees.h"
+#include "tests/support/test.h"
 
-#include <gtest/gtest.h>
 #include <sys/mman.h>
 
 namespace tandem {

@@ -1,39 +1,29 @@
 // SPDX-License-Identifier: MIT
 // Mechanisms of single algorithms: each of them runs and has the intended effect.
-#include "tests/support/cells.h"
+#include "tests/support/on_device.h"
 #include "tests/support/flawed.h"
+#include "tests/support/long_form.h"
 #include "tests/support/scenes.h"
-
-#include <fmt/format.h>
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
 namespace tandem {
 namespace {
 
 using namespace support;
 
-class Mechanisms : public testing::TestWithParam<std::string> {};
+class Mechanisms : public OnDevice {};
 
 /// Eight queues, tiny local queues and a low idle limit force balancing, refills, spills and growth.
 TEST_P(Mechanisms, GproximityIsForcedThroughEveryMechanism) {
-    auto& on = device(GetParam());
     const auto scene = crowd(41, 12, 0.6);
     const auto frame = scene.frame(0);
     const auto expected = reference(scene, frame, {}, true, Method::brute_force);
     const auto& traversal = algorithm("gproximity");
     for (const std::string balance : {"parallel", "serial"}) {
-        const auto settings = resolve(traversal.parameters(), {},
-                                      {{"groups", "8"},
-                                       {"group_size", "8"},
-                                       {"local_queue", "4"},
-                                       {"initial_items", "2"},
-                                       {"queue_capacity", "16"},
-                                       {"idle_limit", "8"},
-                                       {"balance", balance},
-                                       {"balance_group_size", "8"}},
-                                      traversal.name());
-        const std::array devices{&on};
-        const auto session = traversal.prepare(devices, scene, settings);
+        const auto session = prepare_on(on, traversal, scene,
+                                        texts("groups=8 group_size=8 local_queue=4 initial_items=2 "
+                                              "queue_capacity=16 idle_limit=8 balance_group_size=8 balance="
+                                              + balance));
         const auto timed = run_among_all(*session, scene, frame);
         EXPECT_EQ(timed.digest(), expected.digest);
         EXPECT_EQ(timed.contact_digest(), expected.contact_digest);
@@ -52,15 +42,12 @@ TEST_P(Mechanisms, GproximityIsForcedThroughEveryMechanism) {
 /// A seed target divided among the pairs of a frame gives the same seeds as the equivalent threshold per
 /// pair.
 TEST_P(Mechanisms, ChunkedDividesItsSeedTargetAmongPairs) {
-    auto& on = device(GetParam());
+    TANDEM_LONG_FORM_ONLY(GetParam());
     const auto scene = crowd(53, 10, 0.9);
     const auto& traversal = algorithm("chunked");
     const auto seeds = [&](const std::string& threshold, const std::string& target, std::uint64_t& pairs) {
-        const auto settings = resolve(
-            traversal.parameters(), {},
-            {{"leaves", "2"}, {"seed_threshold", threshold}, {"seed_target", target}}, traversal.name());
-        const std::array devices{&on};
-        const auto session = traversal.prepare(devices, scene, settings);
+        const auto session = prepare_on(
+            on, traversal, scene, {{"leaves", "2"}, {"seed_threshold", threshold}, {"seed_target", target}});
         session->count_work(true);
         const auto body_pairs = all_pairs(scene);
         pairs = body_pairs.size();
@@ -81,7 +68,6 @@ TEST_P(Mechanisms, ChunkedDividesItsSeedTargetAmongPairs) {
 /// Boxes of 1296 tetrahedra next to boxes a tenth of their size. Descending both nodes at once tests many
 /// small parts of the small box against large parts of the large one. Both schedules count the same tests.
 TEST_P(Mechanisms, DescendingTheLargerOfUnlikeNodesNeedsFewerTests) {
-    auto& on = device(GetParam());
     auto scene = boxes_scene(6, 4);
     scene.meshes.push_back(scene.meshes[0]);
     for (auto& vertex : scene.meshes.back().vertices) vertex *= 0.1;
@@ -89,11 +75,8 @@ TEST_P(Mechanisms, DescendingTheLargerOfUnlikeNodesNeedsFewerTests) {
         scene.bodies[body].mesh = static_cast<std::uint32_t>(scene.meshes.size() - 1);
     const auto& traversal = algorithm("chunked");
     const auto tests = [&](const std::string& descent, const std::string& schedule, Digest& digest) {
-        const auto settings = resolve(
-            traversal.parameters(), {},
-            {{"descent", descent}, {"schedule", schedule}, {"contact_rule", "none"}}, traversal.name());
-        const std::array devices{&on};
-        const auto session = traversal.prepare(devices, scene, settings);
+        const auto session = prepare_on(
+            on, traversal, scene, {{"descent", descent}, {"schedule", schedule}, {"contact_rule", "none"}});
         session->count_work(true);
         const auto result = run_among_all(*session, scene, scene.frame(0));
         digest = result.digest();
@@ -111,14 +94,11 @@ TEST_P(Mechanisms, DescendingTheLargerOfUnlikeNodesNeedsFewerTests) {
 }
 
 TEST_P(Mechanisms, ResidentChunkedWaitsOnce) {
-    auto& on = device(GetParam());
     const auto scene = crowd(51, 10, 0.9);
     const auto& traversal = algorithm("chunked");
     for (const std::string threshold : {"1", "1e7"}) {
-        const auto settings = resolve(traversal.parameters(), {},
-                                      {{"leaves", "4"}, {"seed_threshold", threshold}}, traversal.name());
-        const std::array devices{&on};
-        const auto session = traversal.prepare(devices, scene, settings);
+        const auto session =
+            prepare_on(on, traversal, scene, {{"leaves", "4"}, {"seed_threshold", threshold}});
         for (std::size_t i = 0; i < scene.frame_count; ++i) {
             on.set_clocks(Clocks::on);
             const auto count = run_among_all(*session, scene, scene.frame(i)).count;
@@ -132,8 +112,7 @@ TEST_P(Mechanisms, ResidentChunkedWaitsOnce) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices, Mechanisms, testing::ValuesIn(device_names()),
-                         [](const auto& test) { return device_label(test.param); });
+TANDEM_ON_DEVICES(Mechanisms);
 
 } // namespace
 } // namespace tandem

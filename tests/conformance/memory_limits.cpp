@@ -5,10 +5,7 @@
 #include "tests/support/long_form.h"
 #include "tests/support/sanitized.h"
 #include "tests/support/scenes.h"
-
-#include <cmath>
-#include <fmt/format.h>
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
 namespace tandem {
 namespace {
@@ -76,7 +73,7 @@ private:
 };
 
 /// All contact rules and layouts; decisions and data paths alternate.
-TEST_P(MemoryLimits, KeepTheAnswer) {
+TEST_P(MemoryLimits, KeepTheAnswerLong) {
     constexpr std::array decisions{"fp32", "recheck", "exact", "fp64"};
     constexpr std::array layouts{"slots", "items"};
     const auto& precision = std::get<2>(GetParam());

@@ -4,11 +4,11 @@
 #include "tests/support/frames_there.h"
 #include "tests/support/limited.h"
 #include "tests/support/long_form.h"
+#include "tests/support/message_of.h"
 #include "tests/support/scenes.h"
 #include "harness/verify/oracle/frame_truth.h"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/on_device.h"
+#include "tests/support/test.h"
 
 namespace tandem {
 namespace {
@@ -36,12 +36,8 @@ Frame between(const Frame& frame, const Frame& next, double s) {
     return result;
 }
 
-class MotionOf : public testing::TestWithParam<std::string> {
+class MotionOf : public OnDevice {
 protected:
-    std::unique_ptr<Session> prepare(const Traversal& traversal, const Scene& scene,
-                                     const SettingTexts& given) {
-        return prepare_on(on, traversal, scene, given);
-    }
     /// The reference of this session.
     static ReferenceAnswer right_for_motion(const Session& session, const Scene& scene,
                                             const FrameInput& input) {
@@ -55,7 +51,6 @@ protected:
         return {algorithms().begin(), algorithms().end()};
     }
 
-    Device& on = device(GetParam());
     Scene scene_ = crowd(11, 9, 2);
     Frame frame_ = scene_.frame(0), next_ = scene_.frame(1);
 };
@@ -192,41 +187,32 @@ TEST_P(MotionOf, FramesOnTheDeviceGiveTheSameAnswer) {
         }
 }
 
-std::string motion_message(const std::function<void()>& work) {
-    try {
-        work();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
-}
-
 TEST_P(MotionOf, RefusesWhatDoesNotFit) {
     const auto& tiled = algorithm("tiled");
     const auto session = prepare(tiled, scene_, moving()), still = prepare(tiled, scene_, {});
-    EXPECT_THAT(motion_message([&] { session->run(frame_); }), HasSubstr("needs the frame's successor"));
-    EXPECT_THAT(motion_message([&] { still->run(frame_, next_); }), HasSubstr("set motion=linear"));
+    EXPECT_THAT(message_of([&] { session->run(frame_); }), HasSubstr("needs the frame's successor"));
+    EXPECT_THAT(message_of([&] { still->run(frame_, next_); }), HasSubstr("set motion=linear"));
     auto shorter = next_;
     shorter.deformed[1].pop_back();
-    EXPECT_THAT(motion_message([&] { session->run(frame_, shorter); }),
+    EXPECT_THAT(message_of([&] { session->run(frame_, shorter); }),
                 HasSubstr("body 1 has 27 vertices in the frame and 26 in its successor"));
     shorter = next_;
     shorter.poses.pop_back();
-    EXPECT_THAT(motion_message([&] { session->run(frame_, shorter); }),
+    EXPECT_THAT(message_of([&] { session->run(frame_, shorter); }),
                 HasSubstr("9 bodies and its successor has 8"));
-    EXPECT_THAT(motion_message([&] {
+    EXPECT_THAT(message_of([&] {
                     prepare(tiled, scene_, {{"motion", "linear"}});
                 }),
                 HasSubstr("choose decision=exact or contact_rule=none"));
-    EXPECT_THAT(motion_message([&] {
+    EXPECT_THAT(message_of([&] {
                     prepare(tiled, scene_, moving({{"rounding", "published"}}));
                 }),
                 HasSubstr("choose rounding=safe"));
-    EXPECT_THAT(motion_message([&] {
+    EXPECT_THAT(message_of([&] {
                     prepare(tiled, scene_, moving({{"slabs", "three"}}));
                 }),
                 HasSubstr("choose slabs=all"));
-    EXPECT_THAT(motion_message([&] {
+    EXPECT_THAT(message_of([&] {
                     prepare(algorithm("chunked"), scene_, moving({{"residency", "published"}}));
                 }),
                 HasSubstr("leave residency and preset out"));
@@ -267,8 +253,7 @@ TEST(SharedMotion, IsFoundByOneDeviceOrTheOther) {
         for (const auto* traversal : {&algorithm("tiled"), &algorithm("chunked")}) {
             SCOPED_TRACE(std::string(traversal->name()) + " " + broad);
             const auto given = moving({{"broad", broad}});
-            const auto session = traversal->prepare(
-                devices, scene, resolve(traversal->parameters(), {}, given, traversal->name()));
+            const auto session = traversal->prepare(devices, scene, resolved(*traversal, given));
             for (std::size_t i = 0; i < 3; ++i) {
                 const auto frame = scene.frame(i % 2), next = scene.frame((i + 1) % 2);
                 EXPECT_EQ(session->run(frame, next).download(),
@@ -279,8 +264,7 @@ TEST(SharedMotion, IsFoundByOneDeviceOrTheOther) {
         }
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices, MotionOf, testing::ValuesIn(device_names()),
-                         [](const auto& test) { return device_label(test.param); });
+TANDEM_ON_DEVICES(MotionOf);
 
 } // namespace
 } // namespace tandem

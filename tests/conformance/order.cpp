@@ -3,19 +3,15 @@
 #include "tests/support/flawed.h"
 #include "tests/support/limited.h"
 #include "tests/support/long_form.h"
-
-#include <fmt/format.h>
-#include <gtest/gtest.h>
+#include "tests/support/on_device.h"
+#include "tests/support/test.h"
 
 namespace tandem {
 namespace {
 
 using namespace support;
 
-class CanonicalOrder : public testing::TestWithParam<std::string> {
-protected:
-    Device& on = device(GetParam());
-};
+class CanonicalOrder : public OnDevice {};
 
 std::vector<Pair> stored_pairs(const FrameResult& result) {
     std::vector<Pair> pairs;
@@ -94,6 +90,7 @@ TEST_P(CanonicalOrder, OfLongRuns) {
 
 /// Twenty runs have equal bytes, also on another algorithm and device.
 TEST_P(CanonicalOrder, GivesEqualBytes) {
+    TANDEM_LONG_FORM_ONLY(GetParam());
     const auto scene = crowd(83, 10, 0.7);
     const SettingTexts given{{"order", "canonical"}, {"k", "18"}};
     const auto right = prepare_on(device("host"), algorithm("chunked"), scene, given)->run(scene.frame(0));
@@ -116,7 +113,7 @@ TEST_P(CanonicalOrder, RunsInBatchesWithoutMemoryForTheSort) {
     const auto scene = boxes_scene(7, 2);
     const auto& tiled = algorithm("tiled");
     const SettingTexts given{{"order", "canonical"}};
-    const auto right = prepare_on(on, tiled, scene, {})->run(scene.frame(0));
+    const auto right = prepare_on(on, tiled, scene)->run(scene.frame(0));
     const Limited limit(on, least_bytes(on, tiled, scene, given) + 40 * right.count);
     const auto session = prepare_on(on, tiled, scene, given);
     const auto result = session->run(scene.frame(0));
@@ -125,8 +122,7 @@ TEST_P(CanonicalOrder, RunsInBatchesWithoutMemoryForTheSort) {
     EXPECT_EQ(result.contact_digest(), right.contact_digest());
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices, CanonicalOrder, testing::ValuesIn(device_names()),
-                         [](const auto& test) { return device_label(test.param); });
+TANDEM_ON_DEVICES(CanonicalOrder);
 
 } // namespace
 } // namespace tandem

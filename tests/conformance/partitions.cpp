@@ -5,10 +5,7 @@
 #include "harness/verify/reference.h"
 #include "tests/support/cells.h"
 #include "tests/support/scenes.h"
-
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
 namespace tandem {
 namespace {
@@ -28,8 +25,7 @@ protected:
     }
     static std::unique_ptr<Session> on_host(const Traversal& traversal, const Scene& scene,
                                             const SettingTexts& given = {}) {
-        const std::array devices{&device("host")};
-        return traversal.prepare(devices, scene, settings_of(traversal, given));
+        return prepare_on(device("host"), traversal, scene, settings_of(traversal, given));
     }
     /// Every bit, and the number of body pairs where both sessions find the same ones.
     static void expect_equal(const FrameResult& result, const FrameResult& right) {

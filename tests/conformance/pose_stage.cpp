@@ -2,22 +2,20 @@
 // Poses of frames in the host's memory, packed by a kernel: the bits that the host packs.
 #include "algorithms/bodies/origin.h"
 #include "algorithms/bodies/pose_stage.h"
-#include "tests/support/cells.h"
+#include "tests/support/on_device.h"
 #include "tests/support/scenes.h"
-
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
 namespace tandem {
 namespace {
 
 using namespace support;
 
-class PoseStages : public testing::TestWithParam<std::string> {
+class PoseStages : public OnDevice {
 protected:
     /// A stage where the device has one.
     std::unique_ptr<PoseStage> stage(const Bodies& bodies) const { return PoseStage::make(bodies, {32, 3}); }
 
-    Device& on = device(GetParam());
     Scene scene = procession(400, 3, 0.35);
 };
 
@@ -58,12 +56,10 @@ TEST_P(PoseStages, LeaveToTheHostWhatItPacksFasterOrAlone) {
 
 /// Frames, resets and subdomains of a session with many bodies.
 TEST_P(PoseStages, GiveSessionsTheRightAnswer) {
-    const std::array devices{&on};
     for (const std::string precision : {"float", "double"}) {
         const auto& traversal = algorithm("tiled");
-        const auto session = traversal.prepare(
-            devices, scene,
-            resolve(traversal.parameters(), {}, {{"broad", "device"}, {"precision", precision}}, "tiled"));
+        const auto session =
+            prepare_on(on, traversal, scene, {{"broad", "device"}, {"precision", precision}});
         for (const std::size_t i : {0u, 1u, 2u, 0u}) {
             if (i == 2) session->reset();
             const auto frame = scene.frame(i);
@@ -77,11 +73,8 @@ TEST_P(PoseStages, GiveSessionsTheRightAnswer) {
 
 TEST_P(PoseStages, CentreDistantMeshes) {
     const auto distant = with_distant_meshes(scene, {1e6});
-    const std::array devices{&on};
     const auto& traversal = algorithm("tiled");
-    const auto session = traversal.prepare(
-        devices, distant,
-        resolve(traversal.parameters(), {}, {{"broad", "device"}, {"origin", "auto"}}, "tiled"));
+    const auto session = prepare_on(on, traversal, distant, {{"broad", "device"}, {"origin", "auto"}});
     for (const std::size_t i : {0u, 2u}) {
         const auto frame = distant.frame(i);
         const auto right = reference(distant, counted_from(session->origin(), frame),
@@ -93,8 +86,7 @@ TEST_P(PoseStages, CentreDistantMeshes) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices, PoseStages, testing::ValuesIn(device_names()),
-                         [](const auto& test) { return device_label(test.param); });
+TANDEM_ON_DEVICES(PoseStages);
 
 } // namespace
 } // namespace tandem

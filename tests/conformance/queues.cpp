@@ -3,24 +3,21 @@
 // pairs.
 #include "algorithms/gproximity/queues.clh"
 #include "algorithms/kernels/sources.h"
-#include "tests/support/cells.h"
+#include "tests/support/on_device.h"
 #include "tests/support/scenes.h"
-
-#include <array>
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
 namespace tandem {
 namespace {
 
 using namespace support;
 
-class Queues : public testing::TestWithParam<std::string> {
+class Queues : public OnDevice {
 protected:
     /// Plans queues that contain `counts` with a work-group of `group_size`. Returns {items, whether to
     /// balance}; `starts` receives the prefix sums and the total. Queues below 2 items request balancing.
     std::array<std::uint32_t, 2> plan(std::uint32_t group_size, const std::vector<std::uint32_t>& counts,
                                       std::vector<std::uint32_t>& starts) {
-        auto& on = device(GetParam());
         const StageScope scope(on, Stage::balance);
         const auto queues = static_cast<std::uint32_t>(counts.size());
         const auto kernel = on.compile(kernel_source("algorithms/gproximity/balance.cl"), "plan_balance",
@@ -39,8 +36,8 @@ protected:
     }
 
     std::vector<std::uint32_t> group_sizes() const {
-        return device(GetParam()).info().max_group_size == 1 ? std::vector<std::uint32_t>{1}
-                                                             : std::vector<std::uint32_t>{1, 2, 32};
+        return on.info().max_group_size == 1 ? std::vector<std::uint32_t>{1}
+                                             : std::vector<std::uint32_t>{1, 2, 32};
     }
 };
 
@@ -71,21 +68,17 @@ TEST_P(Queues, SumsSaturateAtTheLargestCount) {
 }
 
 TEST_P(Queues, TooManyBodyPairsAreRejected) {
-    auto& on = device(GetParam());
     const auto scene = crowd(3, 2, 0.5);
     const BodyPair pair{0, 1};
     for (const auto* traversal : algorithms()) {
-        const auto settings = resolve(traversal->parameters(), {}, {{"broad", "sphere"}}, traversal->name());
-        const std::array devices{&on};
-        const auto session = traversal->prepare(devices, scene, settings);
+        const auto session = prepare_on(on, *traversal, scene, {{"broad", "sphere"}});
         // Rejected before the first pair is read.
         EXPECT_THROW(session->run(scene.frame(0), {&pair, std::size_t{1} << 32}), InputError);
         EXPECT_GT(session->run(scene.frame(0), {&pair, 1}).count, 0u);
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices, Queues, testing::ValuesIn(device_names()),
-                         [](const auto& test) { return device_label(test.param); });
+TANDEM_ON_DEVICES(Queues);
 
 } // namespace
 } // namespace tandem

@@ -3,8 +3,7 @@
 #include "algorithms/broad_phase/broad.h"
 #include "tests/support/cells.h"
 #include "tests/support/scenes.h"
-
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
 namespace tandem {
 namespace {

@@ -3,16 +3,15 @@
 // partners, and bodies that never meet. Tests of all algorithms cover the rest.
 #include "tests/support/limited.h"
 #include "tests/support/scenes.h"
-
-#include <fmt/format.h>
-#include <gtest/gtest.h>
+#include "tests/support/on_device.h"
+#include "tests/support/test.h"
 
 namespace tandem {
 namespace {
 
 using namespace support;
 
-class SceneLeafQueries : public testing::TestWithParam<std::string> {
+class SceneLeafQueries : public OnDevice {
 protected:
     std::unique_ptr<Session> prepare(const Scene& scene, SettingTexts given = {}) {
         given.insert({"tree", "scene"});
@@ -24,8 +23,6 @@ protected:
         EXPECT_EQ(result.digest(), right.digest);
         EXPECT_EQ(result.contact_digest(), right.contact_digest);
     }
-
-    Device& on = device(GetParam());
 };
 
 /// Bodies move and rotate by more than their size, so that a kept tree has leaves far from their neighbours.
@@ -58,7 +55,7 @@ TEST_P(SceneLeafQueries, FindPairsOfFixedBodiesOnlyIfGiven) {
     for (const auto& pair : found) EXPECT_FALSE(pair.body_a == 2 && pair.body_b == 3);
     const auto given = session->run(frame, {{2, 3}});
     EXPECT_GT(given.count, 0u);
-    EXPECT_EQ(given.digest(), prepare_on(on, algorithm("chunked"), scene, {})->run(frame, {{2, 3}}).digest());
+    EXPECT_EQ(given.digest(), prepare_on(on, algorithm("chunked"), scene)->run(frame, {{2, 3}}).digest());
     EXPECT_EQ(session->run(frame).download(), found);
 }
 
@@ -75,8 +72,7 @@ TEST_P(SceneLeafQueries, LeaveOutNodesOfTheirOwnBody) {
     EXPECT_LT(2 * apart, tests("on"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices, SceneLeafQueries, testing::ValuesIn(device_names()),
-                         [](const auto& test) { return device_label(test.param); });
+TANDEM_ON_DEVICES(SceneLeafQueries);
 
 } // namespace
 } // namespace tandem

@@ -5,10 +5,9 @@
 #include "tests/support/long_form.h"
 #include "algorithms/hierarchy/tile_trees.h"
 #include "base/error.h"
-
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/message_of.h"
+#include "tests/support/on_device.h"
+#include "tests/support/test.h"
 
 namespace tandem {
 namespace {
@@ -59,15 +58,7 @@ void expect_equal(const FrameResult& result, const ReferenceAnswer& right) {
     EXPECT_EQ(result.rejected, right.rejected);
 }
 
-class SelfPairsOf : public testing::TestWithParam<std::string> {
-protected:
-    std::unique_ptr<Session> prepare(const Traversal& traversal, const Scene& scene,
-                                     const SettingTexts& given) {
-        return prepare_on(on, traversal, scene, given);
-    }
-
-    Device& on = device(GetParam());
-};
+class SelfPairsOf : public OnDevice {};
 
 std::uint64_t of_body(const std::vector<Pair>& pairs, std::uint32_t body) {
     return static_cast<std::uint64_t>(std::ranges::count_if(
@@ -225,12 +216,10 @@ TEST_P(SelfPairsOf, AGivenPairOfOneBodyNeedsTheSetting) {
     const auto scene = folded_boxes(2);
     const BodyPair only{1, 1};
     const auto session = prepare(algorithm("tiled"), scene, {});
-    try {
-        session->run(scene.frame(0), {&only, 1});
-        ADD_FAILURE() << "no error";
-    } catch (const InputError& error) {
-        EXPECT_THAT(error.what(), HasSubstr("a pair of body 1 with itself; set self=on"));
-    }
+    EXPECT_THAT(message_of([&] {
+                    session->run(scene.frame(0), {&only, 1});
+                }),
+                HasSubstr("a pair of body 1 with itself; set self=on"));
     EXPECT_GT(session->run(scene.frame(0)).body_pairs, 0u);
 }
 
@@ -241,16 +230,14 @@ TEST(SharedSelfPairs, BelongToOneDevice) {
     for (const std::string broad : {"device", "tight"})
         for (const auto* traversal : algorithms()) {
             SCOPED_TRACE(std::string(traversal->name()) + " " + broad);
-            const auto session = traversal->prepare(
-                devices, scene,
-                resolve(traversal->parameters(), {}, {{"self", "on"}, {"broad", broad}}, traversal->name()));
+            const auto session =
+                traversal->prepare(devices, scene, resolved(*traversal, {{"self", "on"}, {"broad", broad}}));
             for (std::size_t i = 0; i < scene.frame_count; ++i)
                 expect_equal(session->run(scene.frame(i)), right_for(*session, scene, scene.frame(i)));
         }
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices, SelfPairsOf, testing::ValuesIn(device_names()),
-                         [](const auto& test) { return device_label(test.param); });
+TANDEM_ON_DEVICES(SelfPairsOf);
 
 } // namespace
 } // namespace tandem

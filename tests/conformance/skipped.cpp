@@ -4,13 +4,10 @@
 #include "tests/support/prepared_trees.h"
 #include "harness/plans/frames.h"
 #include "harness/verify/oracle/frame_truth.h"
-#include "tests/support/cells.h"
+#include "tests/support/on_device.h"
 #include "tests/support/flawed.h"
 #include "tests/support/long_form.h"
-
-#include <cmath>
-#include <fmt/format.h>
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
 namespace tandem {
 namespace {
@@ -50,14 +47,13 @@ std::vector<Pair> expected(const Scene& scene, const Frame& frame, const Geometr
     return pairs;
 }
 
-class Skipping : public testing::TestWithParam<std::string> {
+class Skipping : public OnDevice {
 protected:
-    static void expect_other_pairs(const Traversal& traversal, const Preset& preset,
-                                   const SettingTexts& given, const Scene& scene) {
+    void expect_other_pairs(const Traversal& traversal, const Preset& preset, const SettingTexts& given,
+                            const Scene& scene) {
         auto settings = resolve(traversal.parameters(), preset.values, given, traversal.name());
         SCOPED_TRACE(fmt::format("{} {}{}", traversal.name(), preset.name, text(given)));
-        const std::array devices{&device(GetParam())};
-        const auto session = traversal.prepare(devices, scene, settings);
+        const auto session = prepare_on(on, traversal, scene, settings);
         const auto geometry = geometry_of(session->settings());
         std::size_t left_out = 0;
         for (const auto& frame : frames_of(scene)) {
@@ -86,6 +82,7 @@ TEST_P(Skipping, KeepsAllOtherPairsWithEveryPreset) {
 
 /// Small chunks make many levels; empty_nodes processes more than the first of them.
 TEST_P(Skipping, KeepsAllOtherPairsAtEveryLevel) {
+    TANDEM_LONG_FORM_ONLY(GetParam());
     const auto scene = boxes_scene(7, 4); // 2058 tetrahedra: two levels of more than 1024 items
     const auto& traversal = algorithm("chunked");
     for (const std::string leaves : {"2", "4"})
@@ -96,6 +93,7 @@ TEST_P(Skipping, KeepsAllOtherPairsAtEveryLevel) {
 }
 
 TEST_P(Skipping, WorksInEveryRoundingAndPrecision) {
+    TANDEM_LONG_FORM_ONLY(GetParam());
     const auto scene = boxes_scene(2, 4);
     std::size_t cell = 0;
     for (const auto* traversal : algorithms()) {
@@ -167,8 +165,8 @@ TEST_P(Skipping, NodesBoundUnskippedTetrahedraOnly) {
         for (const std::uint32_t leaves : {2u, 32u, 4096u})
             for (const auto sharing : {Bodies::Sharing::by_mesh, Bodies::Sharing::none}) {
                 SCOPED_TRACE(fmt::format("{} cells, {} leaves", cells, leaves));
-                PreparedTrees on_device(device(GetParam()), scene, {.k = 18}, leaves,
-                                        device(GetParam()).info().max_group_size == 1 ? 1 : 64, sharing);
+                PreparedTrees on_device(on, scene, {.k = 18}, leaves, on.info().max_group_size == 1 ? 1 : 64,
+                                        sharing);
                 PublishedFrame published(on_device.bodies, on_device.trees,
                                          {on_device.trees.group_size(), 1});
                 for (const auto& frame : frames_of(scene)) {
@@ -199,9 +197,7 @@ TEST_P(Skipping, BodiesWhoseNearPartsAreSkippedFormNoPair) {
     const auto vertex = scene.meshes[1].tetrahedra[5][3];
     frame.deformed[2][vertex] = {0, 0, 0}; // a spike through body 1 and into body 0
     const auto& traversal = algorithm("chunked");
-    const std::array devices{&device(GetParam())};
-    const auto session = traversal.prepare(
-        devices, scene, resolve(traversal.parameters(), {}, {{"broad", "device"}}, "chunked"));
+    const auto session = prepare_on(on, traversal, scene, {{"broad", "device"}});
     const auto with = session->run(frame);
     EXPECT_GT(with.body_pairs, 0u);
     EXPECT_GT(with.count, 0u);
@@ -232,9 +228,7 @@ TEST_P(Skipping, AgreesWithTheTruth) {
         for (const auto& list : {truth.touching, truth.overlapping})
             for (const auto& pair : list) EXPECT_FALSE(is_skipped(frame, pair));
         for (const auto* traversal : algorithms()) {
-            const std::array devices{&device(GetParam())};
-            const auto session = traversal->prepare(
-                devices, scene, resolve(traversal->parameters(), {}, {}, traversal->name()));
+            const auto session = prepare_on(on, *traversal, scene);
             const auto pairs = run_among_all(*session, scene, frame).download();
             for (const auto& pair : pairs) EXPECT_FALSE(is_skipped(frame, pair)) << traversal->name();
             const auto errors = pair_errors(truth, pairs);
@@ -244,8 +238,7 @@ TEST_P(Skipping, AgreesWithTheTruth) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices, Skipping, testing::ValuesIn(device_names()),
-                         [](const auto& name) { return device_label(name.param); });
+TANDEM_ON_DEVICES(Skipping);
 
 } // namespace
 } // namespace tandem

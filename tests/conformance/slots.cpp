@@ -1,21 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Candidate pairs of 8 and of 16 bytes: slots map to their tetrahedra, and both layouts give the same pairs.
 #include "algorithms/bodies/bodies.h"
-#include "tests/support/cells.h"
+#include "tests/support/on_device.h"
 #include "tests/support/scenes.h"
-
-#include <cstring>
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
 namespace tandem {
 namespace {
 
 using namespace support;
 
-class Slots : public testing::TestWithParam<std::string> {
+class Slots : public OnDevice {
 protected:
-    Device& on = device(GetParam());
-
     template<class T>
     std::vector<T> contents(const Buffer& buffer, std::size_t count) {
         std::vector<T> values(count);
@@ -87,13 +83,10 @@ TEST_P(Slots, FallBackToItemsAboveTheirLimit) {
 TEST_P(Slots, ExpandToTheSamePairs) {
     const auto scene = crowd(53, 6, 0.8);
     const auto right = reference(scene, scene.frame(0), {}, true, Method::brute_force);
-    const std::array devices{&on};
     for (const auto* traversal : algorithms())
         for (const std::string layout : {"slots", "items"}) {
             SCOPED_TRACE(std::string(traversal->name()) + " " + layout);
-            const auto session = traversal->prepare(
-                devices, scene,
-                resolve(traversal->parameters(), {}, {{"pair_layout", layout}}, traversal->name()));
+            const auto session = prepare_on(on, *traversal, scene, {{"pair_layout", layout}});
             EXPECT_EQ(session->settings().text("pair_layout"), layout);
             const auto result = session->run(scene.frame(0));
             ASSERT_EQ(result.parts.size(), 1u);
@@ -121,17 +114,14 @@ TEST_P(Slots, ExpandToTheSamePairs) {
 /// The published data path uses the release's rows whatever layout is requested.
 TEST_P(Slots, AreUnusedOnThePublishedPath) {
     const auto scene = crowd(53, 3, 0.8);
-    const std::array devices{&on};
     const auto& chunked = algorithm("chunked");
-    const auto session = chunked.prepare(
-        devices, scene, resolve(chunked.parameters(), {}, {{"residency", "published"}}, "chunked"));
+    const auto session = prepare_on(on, chunked, scene, {{"residency", "published"}});
     EXPECT_EQ(session->settings().text("pair_layout"), "items");
     const auto result = session->run(scene.frame(0));
     EXPECT_EQ(result.parts.front()->pairs().layout, PairLayout::items);
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices, Slots, testing::ValuesIn(device_names()),
-                         [](const auto& name) { return device_label(name.param); });
+TANDEM_ON_DEVICES(Slots);
 
 } // namespace
 } // namespace tandem

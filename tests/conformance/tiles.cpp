@@ -5,6 +5,7 @@
 #include "algorithms/hierarchy/tile_trees.h"
 #include "tests/support/cells.h"
 #include "tests/support/flawed.h"
+#include "tests/support/long_form.h"
 #include "tests/support/prepared_trees.h"
 #include "tests/support/sanitized.h"
 #include "tests/support/scenes.h"
@@ -129,6 +130,7 @@ protected:
 };
 
 TEST_P(Tiles, HaveTheBoundsOfChunkTrees) {
+    TANDEM_LONG_FORM_ONLY(GetParam());
     const auto scene = boxes_scene(7, 4); // 2058 tetrahedra: three levels of tiles
     auto frame = scene.frame(1);
     for (const int k : sanitized() ? std::vector<int>{8, 18} : std::vector<int>{6, 8, 18})

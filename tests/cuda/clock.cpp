@@ -3,10 +3,8 @@
 // so the tests of failures run in separate processes.
 #include "tests/cuda/stub_cupti.h"
 #include "tests/cuda/stubbed.h"
-#include "tests/unit/device_support.h"
-
-#include <cstdlib>
-#include <gmock/gmock.h>
+#include "tests/support/test.h"
+#include "tests/unit/backends/device_support.h"
 
 namespace tandem {
 namespace {

@@ -2,10 +2,10 @@
 // The adaptor's own declarations of CUPTI against its headers; built if the headers exist.
 #include "backends/cuda/cupti.h"
 #include "tests/cuda/callable_as.h"
+#include "tests/support/test.h"
 
 #include <cstddef>
 #include <cupti.h>
-#include <gtest/gtest.h>
 
 namespace {
 

@@ -4,12 +4,11 @@
 #include "backends/cuda/driver.h"
 #include "backends/cuda/nvrtc.h"
 #include "tests/cuda/callable_as.h"
+#include "tests/support/test.h"
 
 #include <cuda.h>
 #include <cudaProfiler.h>
 #include <nvrtc.h>
-
-#include <gtest/gtest.h>
 
 namespace {
 

@@ -2,10 +2,8 @@
 // The CUDA adaptor on the stub of the driver: the current context, the cost of a launch, and errors.
 #include "tests/cuda/allocations.h"
 #include "tests/cuda/stubbed.h"
-#include "tests/unit/device_support.h"
-
-#include <cstdlib>
-#include <gmock/gmock.h>
+#include "tests/support/test.h"
+#include "tests/unit/backends/device_support.h"
 
 namespace tandem {
 namespace {

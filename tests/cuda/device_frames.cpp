@@ -5,9 +5,8 @@
 #include "tests/cuda/stubbed.h"
 #include "tests/support/cells.h"
 #include "tests/support/scenes.h"
-#include "tests/unit/device_support.h"
-
-#include <gmock/gmock.h>
+#include "tests/support/test.h"
+#include "tests/unit/backends/device_support.h"
 
 namespace tandem {
 namespace {

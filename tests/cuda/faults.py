@@ -1,6 +1,6 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""faults.py PROGRAM FOLDER NVML CUPTI: errors of the program when CUDA is absent, old, broken or failing,
+# test: cost=1
+"""Errors of the program when CUDA is absent, old, broken or failing,
 with the stubs of the driver and NVRTC in FOLDER and those of NVML and CUPTI (two files)."""
 
 import json
@@ -8,13 +8,12 @@ import os
 import pathlib
 import re
 import subprocess
-import sys
 import tempfile
 import unittest
 
-if len(sys.argv) != 5:
-    sys.exit(__doc__)
-PROGRAM, FOLDER, NVML, CUPTI = (pathlib.Path(a).resolve() for a in sys.argv[1:])
+from tests.program import BUILT, PROGRAM, STUBS as FOLDER
+
+NVML, CUPTI = BUILT / "libstub_nvml.so", BUILT / "libstub_cupti.so"
 RUN = ("run", "pile:bodies=4,frames=1", "--repeat", "1", "--algorithm", "chunked")
 
 
@@ -248,7 +247,3 @@ class Faults(unittest.TestCase):
         status, out, errors = tandem(*RUN, "--device", "cuda:0")
         self.assertEqual((status, errors), (1, []))
         self.assertTrue(re.search(r"WRONG: [1-9]\d* missing, 0 extra", out), out)
-
-
-if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0]], verbosity=2)

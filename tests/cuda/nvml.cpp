@@ -5,10 +5,9 @@
 #include "backends/hardware.h"
 #include "harness/sampling/conditions.h"
 #include "tests/cuda/stubbed.h"
+#include "tests/support/test.h"
 
 #include <chrono>
-#include <cstdlib>
-#include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
 namespace tandem {

@@ -2,10 +2,10 @@
 // The adaptor's own declarations of NVML against its header; built if the header exists.
 #include "backends/cuda/nvml.h"
 #include "tests/cuda/callable_as.h"
+#include "tests/support/test.h"
 
 #define NVML_NO_UNVERSIONED_FUNC_DEFS // also declares older versions of calls
 #include <cstddef>
-#include <gtest/gtest.h>
 #include <nvml.h>
 
 namespace tandem {

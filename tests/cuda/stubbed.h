@@ -4,9 +4,9 @@
 
 #include "backends/cuda/cuda_device.h"
 #include "tests/cuda/stub_driver.h"
+#include "tests/support/test.h"
 
 #include <dlfcn.h>
-#include <gtest/gtest.h>
 
 namespace tandem {
 

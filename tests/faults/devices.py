@@ -1,24 +1,20 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""devices.py PROGRAM SOURCE: every call to OpenCL, or to the CUDA driver and NVRTC, fails in turn, one per
+# test: cost=20 full=1000
+"""Every call to OpenCL, or to the CUDA driver and NVRTC, fails in turn, one per
 run: once, or with all later calls, as on a lost device. The program must end with a documented code and one
-line that gives the reason. Earlier records stay complete, and if it continues its answers are right.
-  OPENCL_SHIM  the library before OpenCL's loader, which keeps enqueued commands in flight
-  CUDA_SHIM    the library before driver and NVRTC
-  CUDA_STUBS   a folder with stubs of both; without it the real ones are called"""
+line that gives the reason. Earlier records stay complete, and if it continues its answers are right. Shims
+stand before OpenCL's loader, where they keep enqueued commands in flight, and before the stubs of CUDA."""
 
 import collections
 import concurrent.futures
 import json
 import os
-import pathlib
-import re
 import shutil
 import subprocess
 import unittest
 
-import pace
-from program import LONG, PROGRAM, Case, sets, tandem, tried
+from tests import pace
+from tests.program import BUILT, LONG, PROGRAM, STUBS, Case, sets, tandem, tried, words_of
 
 SHORT = {"opencl": 4, "cuda": 5}  # runs per command and kind of failure in the short form
 FIRST = {
@@ -49,12 +45,7 @@ Fault = collections.namedtuple(
 
 def stubs():
     """Environment that selects the stubs, and disables NVML and CUPTI, which are not under test."""
-    folder = os.environ.get("CUDA_STUBS")
-    found = (
-        {"LD_LIBRARY_PATH": f"{folder}/driver", "TANDEM_NVRTC": f"{folder}/nvrtc/libnvrtc.so"}
-        if folder
-        else {}
-    )
+    found = {"LD_LIBRARY_PATH": f"{STUBS}/driver", "TANDEM_NVRTC": f"{STUBS}/nvrtc/libnvrtc.so"}
     return {**found, "TANDEM_NVML": "/nonexistent", "TANDEM_CUPTI": "/nonexistent"}
 
 
@@ -73,21 +64,8 @@ class Sweep(Case):
         cls.old = cls.work / "old.jsonl"
         assert (
             tandem(
-                "run",
-                "--mesh",
-                cls.good,
-                "--mesh",
-                cls.good,
-                "--device",
-                "host",
-                "--set",
-                "k=8",
-                "--repeat",
-                1,
-                "--truth",
-                "none",
-                "--out",
-                cls.old,
+                f"run --mesh {cls.good} --mesh {cls.good} --device host --set k=8 --repeat 1 --truth none "
+                f"--out {cls.old}"
             )[0]
             == 0
         )
@@ -113,75 +91,25 @@ class Sweep(Case):
 
     def commands(self, folder):
         """Words by name of the command. Everything is written to the folder; records are appended to old.jsonl."""
-        cell = ("--device", self.device, "--set", "k=8", *sets(SMALL))
-        out = ("--out", folder / "old.jsonl")
+        cell = (f"--device {self.device} --set k=8 --out {folder}/old.jsonl", *sets(SMALL))
+        files = f"--dump-pairs {folder}/pairs.csv --quiet"
+        contacts = "--set contact_rule=sat --set decision=recheck --set precision=float --set rounding=safe"
+        run = f"run {SCENE} --algorithm chunked,tiled --repeat 1 --truth none {files}"
+        simulate = (
+            f"simulate arch:segments=2 --steps 2 --dynamics absolute_tolerance=1 --device {self.device} "
+            f"-o {folder}/a.frames --record {folder}/old.jsonl --quiet"
+        )
         return {
-            "run": (
-                "run",
-                SCENE,
-                "--algorithm",
-                "chunked,tiled",
-                *cell,
-                "--repeat",
-                1,
-                "--truth",
-                "none",
-                *self.checks,
-                *out,
-                "--dump-pairs",
-                folder / "pairs.csv",
-                "--quiet",
-            ),
-            "check": ("check", SCENE, "--algorithm", "gproximity", "--preset", "fair", *cell, *out),
-            "accuracy": (
-                "accuracy",
-                SCENE,
-                "--algorithm",
-                "tiled",
-                *cell,
-                "--set",
-                "contact_rule=sat",
-                "--set",
-                "decision=recheck",
-                "--set",
-                "precision=float",
-                "--set",
-                "rounding=safe",
-                "--repeat",
-                1,
-                *out,
-            ),
-            "simulate": (
-                "simulate",
-                "arch:segments=2",
-                "--steps",
-                2,
-                "--dynamics",
-                "absolute_tolerance=1",
-                "--device",
-                self.device,
-                "-o",
-                folder / "a.frames",
-                "--record",
-                folder / "old.jsonl",
-                "--quiet",
-            ),
-            "export": (
-                "export",
-                SCENE,
-                "--frames",
-                0,
-                "--vtu",
-                folder,
-                "--contacts",
-                "--device",
-                self.device,
-            ),
+            "run": (run, *cell, *self.checks),
+            "check": (f"check {SCENE} --algorithm gproximity --preset fair", *cell),
+            "accuracy": (f"accuracy {SCENE} --algorithm tiled {contacts} --repeat 1", *cell),
+            "simulate": (simulate,),
+            "export": (f"export {SCENE} --frames 0 --vtu {folder} --contacts --device {self.device}",),
         }
 
     def fault(self, command, kind, call):
         """One run in a separate folder in which call `call` fails; 0: no call fails, and calls are counted."""
-        folder = self.work / f"{self.backend}-{command}-{kind.name}-{call}"
+        folder = self.work / f"{self.backend}-{command}-{kind.name}-{call}".replace(" ", "_")
         folder.mkdir()
         shutil.copy(self.old, folder)
         environment = {
@@ -197,7 +125,7 @@ class Sweep(Case):
         environment |= {"SHIM_STAYS": "1"} if kind.keeps_failing else {}
         environment |= {"SHIM_COUNT": str(folder / "count")} if call == 0 else {}
         running = subprocess.Popen(
-            [str(PROGRAM), *map(str, self.commands(folder)[command])],
+            [str(PROGRAM), *words_of(self.commands(folder)[command])],
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,
             text=True,
@@ -295,16 +223,13 @@ class Sweep(Case):
 
 
 class Opencl(Sweep):
-    backend, device, shim = "opencl", "opencl:0", os.environ.get("OPENCL_SHIM", "")
+    backend, device, shim = "opencl", "opencl:0", str(BUILT / "libopencl_shim.so")
 
 
 class Cuda(Sweep):
-    backend, device, shim = "cuda", "cuda:0", os.environ.get("CUDA_SHIM", "")
+    backend, device, shim = "cuda", "cuda:0", str(BUILT / "libcuda_shim.so")
     environment = stubs()
-    checks = ("--no-check",) if "CUDA_STUBS" in os.environ else ()
+    checks = ("--no-check",)
 
 
 del Sweep  # the base class has no backend
-
-if __name__ == "__main__":
-    unittest.main(argv=[os.path.basename(__file__)], verbosity=1)

@@ -1,9 +1,9 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""power.py PROGRAM SOURCE: loss of power after every call that changes a file. Changes that are not yet
+# test: cost=15 full=300
+"""Loss of power after every call that changes a file. Changes that are not yet
 synced are on the disk completely, not at all, all but one, only one, or with half of the last write or zeros
 in its place. The command is resumed on every such disk: everything promised before is there, and the final
-result equals that without the loss. PRELOAD names the library that logs the calls (power.cpp)."""
+result equals that without the loss. power.cpp logs the calls."""
 
 import collections
 import json
@@ -13,12 +13,10 @@ import random
 import re
 import shutil
 import struct
-import subprocess
-import unittest
 
-from program import LONG, PROGRAM, Case, sets, tandem, tried
+from tests.program import BUILT, LONG, Case, sets, tandem, tried
 
-PRELOAD = str(pathlib.Path(os.environ["PRELOAD"]).resolve())  # children run in other folders
+PRELOAD = str(BUILT / "libtandem_power.so")  # children run in other folders
 SHORT = 12  # disks per command in the short form, a random selection
 CAPACITIES = sets({name: 4096 for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity")})
 Change = collections.namedtuple(
@@ -164,52 +162,19 @@ class Power(Case):
 
     def words(self, command, folder):
         cells = (
-            "--mesh",
-            self.good,
-            "--mesh",
-            self.good,
-            "--device",
-            "host",
-            "--algorithm",
-            "chunked,tiled",
-            "--set",
-            "k=6",
+            f"--mesh {self.good} --mesh {self.good} --device host --algorithm chunked,tiled --set k=6",
             *CAPACITIES,
-            "--repeat",
-            2,
-            "--truth",
-            "none",
-            "--quiet",
+            "--repeat 2 --truth none --quiet",
         )
         return {
             "run": ("run", *cells, "--out", folder / "new.jsonl"),
             "append": ("run", *cells, "--out", folder / "old.jsonl"),
             "simulate": (
-                "simulate",
-                "arch:segments=2",
-                "--steps",
-                5,
-                "--checkpoint",
-                2,
-                "--dynamics",
-                "absolute_tolerance=1",
-                "--device",
-                "host",
-                "-o",
-                folder / "a.frames",
-                "--record",
-                folder / "s.jsonl",
-                "--quiet",
+                "simulate arch:segments=2 --steps 5 --checkpoint 2 --dynamics absolute_tolerance=1 "
+                f"--device host -o {folder}/a.frames --record {folder}/s.jsonl --quiet",
             ),
             "paper": (
-                "paper",
-                "--device",
-                "host",
-                "-o",
-                folder / "paper",
-                "--steps",
-                "chunks-morton,chunks-breadth",
-                "--measure-only",
+                f"paper --device host -o {folder}/paper --steps chunks-morton,chunks-breadth --measure-only",
             ),
         }[command]
 
@@ -346,7 +311,3 @@ class Power(Case):
 
     def test_paper(self):
         self.sweep("paper")
-
-
-if __name__ == "__main__":
-    unittest.main(argv=[os.path.basename(__file__)], verbosity=1)

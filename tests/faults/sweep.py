@@ -1,36 +1,27 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""sweep.py PROGRAM SOURCE: every call to the C library fails in turn, one per run: malloc (once, or all later
+# test: cost=20 full=2000
+"""Every call to the C library fails in turn, one per run: malloc (once, or all later
 large ones too), open, write, fsync, rename, ftruncate and pthread_create, in every command that records. The
 program must end with a documented code and one line that gives the reason; earlier records stay complete.
-PRELOAD names the library that makes calls fail."""
+preload.cpp makes calls fail."""
 
 import collections
 import concurrent.futures
 import json
 import os
-import pathlib
 import re
 import shutil
 import subprocess
-import sys
-import unittest
 
-import pace
-from program import LONG, PROGRAM, SOURCE, Case, sets, tandem, tried
+from tests import pace
+from tests.program import BUILT, LONG, PROGRAM, Case, sets, tandem, tried, words_of, write_json
 
-PRELOAD = os.environ["PRELOAD"]
-FAMILIES = ("open", "write", "fsync", "rename", "truncate", "thread", "large", "malloc")
-CALLS = {
-    "open": "open",
-    "write": "write",
-    "fsync": "fsync",
-    "rename": "rename",
-    "truncate": "ftruncate",
-    "thread": "pthread_create",
-    "large": "all large malloc from one on",
-    "malloc": "malloc",
-}
+PRELOAD = str(BUILT / "libtandem_faults.so")
+CALLS = {family: family for family in ("open", "write", "fsync", "rename")}
+CALLS |= {"truncate": "ftruncate", "thread": "pthread_create", "large": "all large malloc from one on"}
+CALLS |= {"malloc": "malloc"}
+FAMILIES = tuple(CALLS)
+FEW = {name: 4096 for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity")}
 CELLS = ("plan", "check", "accuracy")  # commands with several cells
 LIBRARYS_WORDS = r"std::|::at\b|basic_string|bad_alloc|json\.exception|vector::"
 SHORT = 5  # runs per command and family in the short form, except malloc
@@ -68,41 +59,20 @@ class Sweep(Case):
         cls.old = cls.work / "old.jsonl"
         assert (
             tandem(
-                "run",
-                "--mesh",
-                cls.good,
-                "--mesh",
-                cls.good,
-                "--device",
-                "host",
-                "--set",
-                "k=8",
-                "--repeat",
-                1,
-                "--truth",
-                "none",
-                "--out",
-                cls.old,
+                f"run --mesh {cls.good} --mesh {cls.good} --device host --set k=8 --repeat 1 --truth none "
+                f"--out {cls.old}"
             )[0]
             == 0
         )
         cls.plan = cls.work / "cells.json"
-        cls.plan.write_text(
-            json.dumps(
-                {
-                    "plan": "two cells",
-                    "scenes": "pile:bodies=2,frames=1",
-                    "devices": "host",
-                    "algorithms": ["tiled"],
-                    "settings": {
-                        "k": [6, 8],
-                        **{
-                            name: 4096 for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity")
-                        },
-                    },
-                    "measure": {"repeat": 1, "truth": "none"},
-                }
-            )
+        write_json(
+            cls.plan,
+            plan="two cells",
+            scenes="pile:bodies=2,frames=1",
+            devices="host",
+            algorithms=["tiled"],
+            settings={"k": [6, 8], **FEW},
+            measure={"repeat": 1, "truth": "none"},
         )
 
     @classmethod
@@ -114,111 +84,34 @@ class Sweep(Case):
         # Without a failed test, all of them were checked; otherwise no line is added.
         if cls.swept == cls.wanted:
             for family in FAMILIES:
-                tried(
-                    f"calls that fail: {CALLS[family]}",
-                    cls.counts[family],
-                    "runs",
-                    rest=sum(cls.lost_by[family].values()),
-                )
+                lost = sum(cls.lost_by[family].values())
+                tried(f"calls that fail: {CALLS[family]}", cls.counts[family], "runs", rest=lost)
         super().tearDownClass()
 
     def commands(self, folder):
         """By name of the command: words, and the file of records that it appends to, or None. Everything is written
         to the folder."""
         out = folder / "old.jsonl"
-        cell = ("--mesh", self.good, "--mesh", self.good, "--device", "host", "--set", "k=8")
-        tiled = (
-            "--algorithm",
-            "tiled",
-            *sets({name: 4096 for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity")}),
+        cell = f"--mesh {self.good} --mesh {self.good} --device host --set k=8"
+        tiled = ["--algorithm tiled", *sets(FEW)]
+        few_seeds = sets({name: 4096 for name in ("pair_capacity", "contact_capacity", "seed_capacity")})
+        contacts = "--set contact_rule=sat --set decision=fp32 --set precision=float --set rounding=safe"
+        run = f"--repeat 1 --truth contacts --out {out} --dump-pairs {folder}/pairs.csv --trace {folder}/trace.json"
+        simulate = (
+            f"simulate arch:segments=2 --steps 2 --device host -o {folder}/a.frames --record {out} --quiet "
+            "--dynamics absolute_tolerance=1"
+        )
+        export = (
+            f"export pile:bodies=2,frames=2 --frames 0:1 --vtu {folder}/vtu --glb {folder}/a.glb "
+            f"--geometry {folder}/g.json --chunks {folder}/c.csv"
         )
         return {
-            "run": (
-                (
-                    "run",
-                    *cell,
-                    *tiled,
-                    "--repeat",
-                    1,
-                    "--truth",
-                    "contacts",
-                    "--out",
-                    out,
-                    "--dump-pairs",
-                    folder / "pairs.csv",
-                    "--trace",
-                    folder / "trace.json",
-                ),
-                out,
-            ),
+            "run": ((f"run {cell}", *tiled, run), out),
             "plan": (("run", self.plan, "--out", out), out),
-            "check": (
-                (
-                    "check",
-                    *cell,
-                    "--algorithm",
-                    "chunked",
-                    "--preset",
-                    "grouped,published",
-                    *sets({name: 4096 for name in ("pair_capacity", "contact_capacity", "seed_capacity")}),
-                ),
-                None,
-            ),
-            "accuracy": (
-                (
-                    "accuracy",
-                    *cell,
-                    "--set",
-                    "contact_rule=sat",
-                    "--set",
-                    "decision=fp32",
-                    "--set",
-                    "precision=float",
-                    "--set",
-                    "rounding=safe",
-                    *tiled,
-                    "--repeat",
-                    1,
-                    "--out",
-                    out,
-                ),
-                out,
-            ),
-            "simulate": (
-                (
-                    "simulate",
-                    "arch:segments=2",
-                    "--steps",
-                    2,
-                    "--device",
-                    "host",
-                    "-o",
-                    folder / "a.frames",
-                    "--record",
-                    out,
-                    "--quiet",
-                    "--dynamics",
-                    "absolute_tolerance=1",
-                ),
-                out,
-            ),
-            "export": (
-                (
-                    "export",
-                    "pile:bodies=2,frames=2",
-                    "--frames",
-                    "0:1",
-                    "--vtu",
-                    folder / "vtu",
-                    "--glb",
-                    folder / "a.glb",
-                    "--geometry",
-                    folder / "g.json",
-                    "--chunks",
-                    folder / "c.csv",
-                ),
-                None,
-            ),
+            "check": ((f"check {cell} --algorithm chunked --preset grouped,published", *few_seeds), None),
+            "accuracy": ((f"accuracy {cell} {contacts}", *tiled, f"--repeat 1 --out {out}"), out),
+            "simulate": ((simulate,), out),
+            "export": ((export,), None),
         }
 
     def fault(self, command, family, at, number):
@@ -238,7 +131,7 @@ class Sweep(Case):
             "TANDEM_KERNEL_CACHE": str(folder / "cache"),
         }
         running = subprocess.Popen(
-            [str(PROGRAM), *map(str, words)],
+            [str(PROGRAM), *words_of(words)],
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,
             text=True,
@@ -331,7 +224,3 @@ class Sweep(Case):
 
     def test_export(self):
         self.sweep("export")
-
-
-if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0]], verbosity=1)

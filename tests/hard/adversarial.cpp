@@ -3,11 +3,8 @@
 #include "harness/verify/adversarial.h"
 #include "base/error.h"
 #include "tests/hard/support.h"
-#include "tests/support/cells.h"
-
-#include <gtest/gtest.h>
-
-#include <numeric>
+#include "tests/support/on_device.h"
+#include "tests/support/test.h"
 
 namespace tandem {
 namespace {
@@ -20,12 +17,11 @@ constexpr std::array tested{8, 18};
 constexpr std::array tested{8, 18, 26};
 #endif
 
-class Adversarial : public testing::TestWithParam<std::string> {
+class Adversarial : public OnDevice {
 protected:
     std::vector<AdversarialCell> cells(Rounding rounding) {
         std::vector<AdversarialCell> result;
-        for (const int k : {8, 18, 26})
-            result.push_back({&device(GetParam()), {.k = k, .rounding = rounding}});
+        for (const int k : {8, 18, 26}) result.push_back({&on, {.k = k, .rounding = rounding}});
         return result;
     }
 };
@@ -64,8 +60,7 @@ TEST_P(Adversarial, RoundingToNearestMissesPairs) {
     EXPECT_FALSE(tally.ok());
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices, Adversarial, testing::ValuesIn(device_names()),
-                         [](const auto& name) { return device_label(name.param); });
+TANDEM_ON_DEVICES(Adversarial);
 
 TEST(AdversarialFamilies, TalliesAreMerged) {
     AdversarialTally one, other, sum;

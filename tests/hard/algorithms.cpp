@@ -6,16 +6,10 @@
 #include "harness/verify/oracle/motion_truth.h"
 #include "base/error.h"
 #include "scenes/hard/hard.h"
-#include "tests/support/cells.h"
+#include "tests/support/on_device.h"
 #include "tests/support/flawed.h"
 #include "tests/support/long_form.h"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <fmt/format.h>
-#include <optional>
-#include <set>
+#include "tests/support/test.h"
 
 namespace tandem {
 namespace {
@@ -70,15 +64,15 @@ Scene as_one_body(const Scene& scene) {
     return one;
 }
 
-class HardAlgorithms : public testing::TestWithParam<std::string> {
+constexpr const char* few = "work_items=64 pair_capacity=8192 contact_rule=none";
+
+class HardAlgorithms : public OnDevice {
 protected:
     void expect_none_missed(const Traversal& traversal, const Scene& scene, std::span<const Frame> frames,
                             SettingTexts given) {
         if (traversal.name() == "gproximity") given["queue_bytes"] = "1048576";
         given["origin"] = "world"; // some families are hard because they are far from it
-        const std::array devices{&device(GetParam())};
-        const auto session =
-            traversal.prepare(devices, scene, resolve(traversal.parameters(), {}, given, traversal.name()));
+        const auto session = prepare_on(on, traversal, scene, given);
         for (const auto& frame : frames) {
             const Positions positions{Precision::fp32, Placement::rounded,
                                       session->settings()[parameters::origin],
@@ -109,14 +103,10 @@ TEST_P(HardAlgorithms, MissNothing) {
                 // In short form, devices that compile use one k per family, alternating between families.
                 if (!long_form() && GetParam() != "host" && (k == "8") == (number % 2 == 0)) continue;
                 SCOPED_TRACE(fmt::format("{} {} k={}", family.name, traversal->name(), k));
-                expect_none_missed(*traversal, scene,
-                                   std::array{scene.frame(0), scene.frame(scene.frame_count - 1)},
-                                   {{"k", k},
-                                    {"self", family.self ? "on" : "off"},
-                                    {"origin", family.distant ? "auto" : "world"},
-                                    {"work_items", "64"},
-                                    {"pair_capacity", "8192"},
-                                    {"contact_rule", "none"}});
+                expect_none_missed(
+                    *traversal, scene, std::array{scene.frame(0), scene.frame(scene.frame_count - 1)},
+                    texts(fmt::format("k={} self={} origin={} {}", k, family.self ? "on" : "off",
+                                      family.distant ? "auto" : "world", few)));
             }
     }
     EXPECT_GT(met_, 10000u);
@@ -136,11 +126,7 @@ TEST_P(HardAlgorithms, MissNothingWithinABody) {
             SCOPED_TRACE(fmt::format("{} {}", family.name, traversal->name()));
             expect_none_missed(*traversal, scene,
                                std::array{scene.frame(0), scene.frame(scene.frame_count - 1)},
-                               {{"k", "18"},
-                                {"self", "on"},
-                                {"work_items", "64"},
-                                {"pair_capacity", "8192"},
-                                {"contact_rule", "none"}});
+                               texts(fmt::format("k=18 self=on {}", few)));
         }
     }
     EXPECT_GT(met_, GetParam() == "host" ? 10000u : 1000u);
@@ -166,22 +152,12 @@ TEST_P(HardAlgorithms, MissNothingOnTheWay) {
                 if (!long_form() && GetParam() != "host" && i != number % algorithms().size()) continue;
                 const auto* traversal = algorithms()[i];
                 SCOPED_TRACE(fmt::format("{} {} {}", family.name, traversal->name(), precision));
-                SettingTexts given{{"k", family.motion && GetParam() == "host" ? "26" : "18"},
-                                   {"precision", precision},
-                                   {"motion", "linear"},
-                                   {"origin", "world"},
-                                   {"self", family.self ? "on" : "off"},
-                                   {"work_items", "64"},
-                                   {"pair_capacity", "8192"},
-                                   {"contact_rule", "none"}};
+                const int k = family.motion && GetParam() == "host" ? 26 : 18;
+                auto given = texts(fmt::format("k={} precision={} self={} motion=linear origin=world {}", k,
+                                               precision, family.self ? "on" : "off", few));
                 if (traversal->name() == "gproximity") given["queue_bytes"] = "1048576";
-                const std::array devices{&device(GetParam())};
                 const auto found =
-                    traversal
-                        ->prepare(devices, scene,
-                                  resolve(traversal->parameters(), {}, given, traversal->name()))
-                        ->run(from, to, all_pairs(scene, self))
-                        .download();
+                    prepare(*traversal, scene, given)->run(from, to, all_pairs(scene, self)).download();
                 EXPECT_TRUE(std::ranges::includes(found, truth.colliding));
             }
         }
@@ -194,7 +170,6 @@ TEST_P(HardAlgorithms, MissNothingOnTheWay) {
 /// runs every k.
 TEST(HardContacts, AreEqualForEveryK) {
     const auto& tiled = algorithm("tiled");
-    const std::array devices{&device("host")};
     std::uint64_t contacts = 0;
     std::set<std::uint64_t> counts;
     const auto expect_equal = [&](const std::string& of, const std::string& rounding,
@@ -205,9 +180,9 @@ TEST(HardContacts, AreEqualForEveryK) {
             SCOPED_TRACE(fmt::format("{} rounding={} k={}", of, rounding, k));
             const SettingTexts given{
                 {"k", k}, {"rounding", rounding}, {"output", "contacts"}, {"decision", "exact"}};
-            const auto settings = resolve(tiled.parameters(), {}, given, tiled.name());
+            const auto settings = resolved(tiled, given);
             ASSERT_TRUE(contacts_are_equal_for_every_k(settings));
-            auto result = tiled.prepare(devices, scene, settings)->run(scene.frame(0));
+            auto result = prepare_on(device("host"), tiled, scene, settings)->run(scene.frame(0));
             counts.insert(result.count);
             if (!first)
                 first = std::move(result);
@@ -262,10 +237,7 @@ TEST_P(HardAlgorithms, ExactCapacityLosesNothing) {
     const auto frame = scene.frame(0);
     for (const auto* traversal : algorithms())
         for (const auto& [capacity, retries] : {std::pair{"999", 1u}, {"1000", 0u}, {"1001", 0u}}) {
-            const std::array devices{&device(GetParam())};
-            const auto session = traversal->prepare(
-                devices, scene,
-                resolve(traversal->parameters(), {}, {{"pair_capacity", capacity}}, traversal->name()));
+            const auto session = prepare_on(on, *traversal, scene, {{"pair_capacity", capacity}});
             const auto result = run_among_all(*session, scene, frame);
             EXPECT_EQ(result.count, 1000u) << traversal->name() << " " << capacity;
             EXPECT_EQ(result.retries, retries) << traversal->name() << " " << capacity;
@@ -279,10 +251,7 @@ TEST_P(HardAlgorithms, CountsEqualTheConstruction) {
     const auto scene = make_scene("hard:counter-wrap:difficulty=15");
     for (const auto* traversal : algorithms())
         for (const std::string output : {"pairs", "count", "digest"}) {
-            const std::array devices{&device(GetParam())};
-            const auto session = traversal->prepare(
-                devices, scene,
-                resolve(traversal->parameters(), {}, {{"output", output}}, traversal->name()));
+            const auto session = prepare_on(on, *traversal, scene, {{"output", output}});
             const auto result = run_among_all(*session, scene, scene.frame(0));
             EXPECT_EQ(result.count, family.meeting(15)) << traversal->name() << " " << output;
         }
@@ -292,13 +261,12 @@ TEST_P(HardAlgorithms, CountsEqualTheConstruction) {
 TEST_P(HardAlgorithms, RefitsDoNotDependOnEarlierFrames) {
     const auto scene = make_scene("hard:refit-order:difficulty=20");
     for (const auto* traversal : algorithms()) {
-        const std::array devices{&device(GetParam())};
-        const auto settings = resolve(traversal->parameters(), {}, {}, traversal->name());
-        const auto old = traversal->prepare(devices, scene, settings);
+        const auto settings = resolved(*traversal);
+        const auto old = prepare_on(on, *traversal, scene, settings);
         for (std::size_t i = 0; i + 1 < scene.frame_count; ++i) run_among_all(*old, scene, scene.frame(i));
         const auto last = scene.frame(scene.frame_count - 1);
         const auto result = run_among_all(*old, scene, last);
-        const auto fresh = traversal->prepare(devices, scene, settings);
+        const auto fresh = prepare_on(on, *traversal, scene, settings);
         const auto expected = run_among_all(*fresh, scene, last);
         EXPECT_GT(expected.count, 0u);
         EXPECT_EQ(result.digest(), expected.digest()) << traversal->name();
@@ -318,11 +286,8 @@ TEST_P(HardAlgorithms, ContactsAreFinite) {
     for (const auto& family : hard_families()) {
         if (family.name == "not-finite") continue;
         const auto scene = make_scene(specification(family));
-        const std::array devices{&device(GetParam())};
-        const auto session = traversal.prepare(
-            devices, scene,
-            resolve(traversal.parameters(), {}, {{"pair_capacity", "32768"}, {"contact_capacity", "65536"}},
-                    "chunked"));
+        const auto session =
+            prepare_on(on, traversal, scene, {{"pair_capacity", "32768"}, {"contact_capacity", "65536"}});
         const auto result = run_among_all(*session, scene, scene.frame(0));
         for (const auto& contact : result.download_contacts()) {
             ASSERT_TRUE(is_finite(contact)) << family.name;
@@ -332,8 +297,7 @@ TEST_P(HardAlgorithms, ContactsAreFinite) {
     EXPECT_GT(found, 10000u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices, HardAlgorithms, testing::ValuesIn(device_names()),
-                         [](const auto& name) { return device_label(name.param); });
+TANDEM_ON_DEVICES(HardAlgorithms);
 
 } // namespace
 } // namespace tandem

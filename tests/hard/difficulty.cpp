@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The difficulty of every family affects its metric, and the methods known to fail do fail.
 #include "tests/hard/support.h"
+#include "tests/support/test.h"
 
 #include "algorithms/bounds/geometry.h"
 #include "geometry/contact_truth.h"
 #include "harness/verify/oracle/motion_truth.h"
 #include "harness/verify/world_vertices.h"
-
-#include <gtest/gtest.h>
-
-#include <functional>
 
 namespace tandem {
 namespace {

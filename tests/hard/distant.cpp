@@ -2,12 +2,8 @@
 // Family far: every algorithm gives the answer of the bodies near the origin at every distance, whether the
 // mesh, the pose or both move them.
 #include "tests/hard/support.h"
-#include "tests/support/cells.h"
-
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include <set>
+#include "tests/support/on_device.h"
+#include "tests/support/test.h"
 
 namespace tandem {
 namespace {
@@ -59,14 +55,11 @@ TEST(HardDistant, RoundingInTheWorldLosesPairs) {
     EXPECT_GT(lost, near.size() / 20);
 }
 
-class HardDistances : public testing::TestWithParam<std::string> {
+class HardDistances : public OnDevice {
 protected:
     FrameResult run(const Traversal& traversal, const Scene& scene, SettingTexts given) {
         given["origin"] = "auto";
-        const std::array devices{&device(GetParam())};
-        return traversal
-            .prepare(devices, scene, resolve(traversal.parameters(), {}, given, traversal.name()))
-            ->run(scene.frame(0));
+        return prepare(traversal, scene, given)->run(scene.frame(0));
     }
 };
 
@@ -114,8 +107,7 @@ TEST_P(HardDistances, AreCoveredByExactPlacement) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices, HardDistances, testing::ValuesIn(device_names()),
-                         [](const auto& name) { return device_label(name.param); });
+TANDEM_ON_DEVICES(HardDistances);
 
 } // namespace
 } // namespace tandem

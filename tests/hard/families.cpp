@@ -5,11 +5,9 @@
 #include "algorithms/bodies/range.h"
 #include "harness/verify/oracle/frame_truth.h"
 #include "base/error.h"
+#include "tests/support/message_of.h"
 #include "tests/support/scenes.h"
-
-#include <gmock/gmock.h>
-
-#include <set>
+#include "tests/support/test.h"
 
 namespace tandem {
 namespace {
@@ -185,12 +183,7 @@ TEST(HardScenes, RefuseImpossibleParameters) {
 }
 
 std::string refusal(const Scene& scene, std::size_t frame) {
-    try {
-        check_range(scene, scene.frame(frame), Precision::fp32);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
+    return message_of([&] { check_range(scene, scene.frame(frame), Precision::fp32); });
 }
 
 /// For every corner, infinite or not a number.

@@ -2,9 +2,7 @@
 // Families about motion and about pairs of one body: the oracle confirms what the constructions define.
 #include "harness/verify/oracle/motion_truth.h"
 #include "scenes/hard/hard.h"
-
-#include <fmt/format.h>
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
 namespace tandem {
 namespace {

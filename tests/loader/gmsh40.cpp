@@ -2,13 +2,10 @@
 // MSH 4.0, as Gmsh 4.0 writes it: version 4, the tag of an entity before its dimension, a node's tag beside
 // it.
 #include "tests/loader/files.h"
+#include "tests/support/test.h"
 #include "scenes/mesh.h"
 
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
 namespace tandem::loader {
-
 namespace {
 
 const std::string text40 = R"($MeshFormat
@@ -89,5 +86,4 @@ TEST(Gmsh40, BadFilesAreRefused) {
 }
 
 } // namespace
-
 } // namespace tandem::loader

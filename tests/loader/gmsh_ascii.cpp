@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "tests/loader/files.h"
+#include "tests/support/test.h"
 #include "scenes/mesh.h"
 
-#include <gtest/gtest.h>
-
 namespace tandem::loader {
-
 namespace {
 
 const std::string version2 = R"($MeshFormat
@@ -128,5 +126,4 @@ TEST(GmshAscii, BadStructure) {
 }
 
 } // namespace
-
 } // namespace tandem::loader

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "tests/loader/files.h"
+#include "tests/support/test.h"
 #include "scenes/mesh.h"
 
-#include <gtest/gtest.h>
-#include <limits>
-
 namespace tandem::loader {
-
 namespace {
 
 template<class... T>
@@ -98,5 +95,4 @@ TEST(GmshBinary, Truncated) {
 }
 
 } // namespace
-
 } // namespace tandem::loader

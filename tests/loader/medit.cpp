@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "tests/loader/files.h"
+#include "tests/support/test.h"
 #include "scenes/mesh.h"
 
-#include <gtest/gtest.h>
-
 namespace tandem::loader {
-
 namespace {
 
 const std::string example = R"(MeshVersionFormatted 2
@@ -93,5 +91,4 @@ TEST(Medit, NoTetrahedra) {
 }
 
 } // namespace
-
 } // namespace tandem::loader

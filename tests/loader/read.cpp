@@ -1,25 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "tests/loader/files.h"
+#include "tests/support/message_of.h"
+#include "tests/support/test.h"
 #include "base/error.h"
 #include "scenes/read/read.h"
 
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <gtest/gtest.h>
 #include <sstream>
 
 namespace tandem::loader {
-
 namespace {
 
 std::string message(const std::string& path) {
-    try {
-        read_mesh(path);
-        return "no error";
-    } catch (const InputError& error) {
-        return error.what();
-    }
+    return support::message_of([&] { read_mesh(path); });
 }
 
 TEST(Read, NotAFile) {
@@ -97,5 +89,4 @@ TEST(Read, RealMeshes) {
 }
 
 } // namespace
-
 } // namespace tandem::loader

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "tests/loader/files.h"
+#include "tests/support/message_of.h"
+#include "tests/support/test.h"
 #include "base/error.h"
 #include "scenes/mesh.h"
 
-#include <gtest/gtest.h>
-
 namespace tandem::loader {
-
 namespace {
 
 const std::string node =
@@ -63,18 +62,12 @@ TEST(Tetgen, BadElements) {
 
 TEST(Tetgen, MissingPartner) {
     const auto expect = [](const std::string& path, const std::string& missing) {
-        try {
-            read_mesh(path);
-            ADD_FAILURE() << "no error";
-        } catch (const InputError& error) {
-            EXPECT_EQ(error.what(),
-                      missing + ": missing, the partner of " + path + "; put both into one folder");
-        }
+        EXPECT_EQ(support::message_of([&] { read_mesh(path); }),
+                  missing + ": missing, the partner of " + path + "; put both into one folder");
     };
     expect(write_file("lonely.node", node), folder() + "/lonely.ele");
     expect(write_file("alone.ele", ele), folder() + "/alone.node");
 }
 
 } // namespace
-
 } // namespace tandem::loader

@@ -1,21 +1,18 @@
 // SPDX-License-Identifier: MIT
 // Duplicates, welding, and cells that readers leave out or reduce.
 #include "tests/loader/files.h"
+#include "tests/support/message_of.h"
+#include "tests/support/test.h"
 #include "base/error.h"
 #include "scenes/mesh.h"
 #include "scenes/read/read.h"
 #include "scenes/refine.h"
 #include "scenes/scene.h"
 
-#include <fmt/format.h>
-#include <fstream>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sstream>
 #include <zlib.h>
 
 namespace tandem::loader {
-
 namespace {
 
 /// The text of a Medit file.
@@ -56,14 +53,10 @@ TEST(Topology, KeptDuplicatesHaveTheBoundaryOfTheFirst) {
 }
 
 TEST(Topology, DuplicatesAreRejected) {
-    try {
-        read(medit(five, {pair[0], pair[1], {3, 1, 0, 2}}), {.duplicates = Duplicates::reject});
-        FAIL() << "no exception";
-    } catch (const InputError& error) {
-        EXPECT_THAT(error.what(),
-                    testing::HasSubstr("topology.mesh: 1 of 3 tetrahedra have the vertices of an "
-                                       "earlier one, such as 2 those of 0"));
-    }
+    const auto mesh = medit(five, {pair[0], pair[1], {3, 1, 0, 2}});
+    EXPECT_THAT(support::message_of([&] { read(mesh, {.duplicates = Duplicates::reject}); }),
+                testing::HasSubstr("topology.mesh: 1 of 3 tetrahedra have the vertices of an "
+                                   "earlier one, such as 2 those of 0"));
 }
 
 /// The pair without common vertex numbers: the second tetrahedron has copies, `off` beside.
@@ -226,5 +219,4 @@ TEST(Topology, FormatsWithoutAReaderAreNamed) {
 }
 
 } // namespace
-
 } // namespace tandem::loader

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "tests/loader/files.h"
+#include "tests/support/test.h"
 #include "scenes/mesh.h"
 
-#include <gtest/gtest.h>
-
 namespace tandem::loader {
-
 namespace {
 
 const std::string example = R"(# Vega mesh file.
@@ -55,5 +53,4 @@ TEST(Veg, BadInput) {
 }
 
 } // namespace
-
 } // namespace tandem::loader

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "tests/loader/files.h"
+#include "tests/support/test.h"
 #include "scenes/mesh.h"
 
-#include <algorithm>
 #include <cctype>
-#include <gtest/gtest.h>
-#include <limits>
 
 namespace tandem::loader {
-
 namespace {
 
 const std::string rows = R"(# vtk DataFile Version 3.0
@@ -186,5 +183,4 @@ TEST(Vtk, Truncated) {
 }
 
 } // namespace
-
 } // namespace tandem::loader

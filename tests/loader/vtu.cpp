@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "tests/loader/files.h"
+#include "tests/support/test.h"
 #include "scenes/mesh.h"
 
-#include <algorithm>
-#include <gtest/gtest.h>
-#include <limits>
 #include <lz4.h>
 #include <lzma.h>
 #include <zlib.h>
 
 namespace tandem::loader {
-
 namespace {
 
 std::string base64(std::string_view bytes) {
@@ -285,5 +282,4 @@ TEST(Vtu, Truncated) {
 }
 
 } // namespace
-
 } // namespace tandem::loader

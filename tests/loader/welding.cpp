@@ -4,14 +4,11 @@
 #include "base/random.h"
 #include "scenes/mesh.h"
 #include "scenes/weld.h"
+#include "tests/support/test.h"
 
 #include <ctime>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <numeric>
 
 namespace tandem::loader {
-
 namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
@@ -103,5 +100,4 @@ TEST(Welding, ACompletedMeshIsConnectedAnew) {
 }
 
 } // namespace
-
 } // namespace tandem::loader

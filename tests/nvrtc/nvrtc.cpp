@@ -168,7 +168,7 @@ bool can_compile(const Programs& programs) {
     return false;
 }
 
-TEST(Nvrtc, EveryProgramOfThePlanForHopper) {
+TEST(Nvrtc, EveryProgramOfThePlanForHopperOnlyLong) {
     const auto programs = plan();
     ASSERT_GT(programs.size(), 100u);
     if (!can_compile(programs)) return;
@@ -193,7 +193,7 @@ TEST(Nvrtc, EveryProgramOfThePlanForHopper) {
 /// work-items of an sm_90 multiprocessor (64 registers each). It is a third for the traversal with nodes in
 /// registers; 28 warps for the one with boxes in registers, whose rows in local memory limit it to that
 /// number; a quarter for contacts. Builds that count work are never timed and have no budget.
-TEST(Nvrtc, DefaultFloatKernelsKeepTheirBudget) {
+TEST(Nvrtc, DefaultFloatKernelsKeepTheirBudgetLong) {
     const auto programs = defaults();
     if (!can_compile(programs)) return;
     for (const auto& [key, names] : programs) {
@@ -222,7 +222,7 @@ TEST(Nvrtc, DefaultFloatKernelsKeepTheirBudget) {
     }
 }
 
-TEST(Nvrtc, ContactRulesAndDecisionsKeepTheirBudget) {
+TEST(Nvrtc, ContactRulesAndDecisionsKeepTheirBudgetOnlyLong) {
     CompilingDevice device;
     prepare_contacts(device);
     if (!can_compile(device.requested())) return;
@@ -268,7 +268,7 @@ TEST(Nvrtc, ContactsByBoundaryFacesHaveNoStack) {
     EXPECT_EQ(checked, 2 * 2 * 4); // certify_pairs, separate_pairs and generate_contacts, also at once
 }
 
-TEST(Nvrtc, NoFusedMultiplyAdd) {
+TEST(Nvrtc, NoFusedMultiplyAddLong) {
     const auto programs = defaults();
     if (!can_compile(programs)) return;
     for_each(programs, [&](const KernelSource& source, const Defines& defines, const std::set<std::string>&) {
@@ -299,7 +299,7 @@ TEST(Nvrtc, DirectedSlabsRoundDownAndUp) {
     EXPECT_EQ(checked, 2);
 }
 
-TEST(Nvrtc, DefaultsForEveryArchitecture) {
+TEST(Nvrtc, DefaultsForEveryArchitectureOnlyLong) {
     const auto programs = defaults();
     if (!can_compile(programs)) return;
     const auto& known = nvrtc()->architectures();

@@ -2,9 +2,8 @@
 // OpenCL calls that fail with work in flight: the resulting error, and that the device stays usable.
 #include "backends/opencl/opencl_device.h"
 #include "tests/opencl/shim.h"
-#include "tests/unit/device_support.h"
-
-#include <gmock/gmock.h>
+#include "tests/support/test.h"
+#include "tests/unit/backends/device_support.h"
 
 namespace tandem {
 namespace {

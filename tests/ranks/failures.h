@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <fmt/format.h>
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
 #include <cstdio>
-#include <string>
 
 namespace tandem {
 

@@ -3,10 +3,7 @@
 #include "algorithms/distributed/ghost_exchange.h"
 
 #include "tests/ranks/job.h"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <numeric>
+#include "tests/support/test.h"
 
 namespace tandem {
 namespace {

@@ -2,10 +2,7 @@
 #include "backends/mpi/mpi_ranks.h"
 #include "tests/ranks/failures.h"
 #include "tests/ranks/job.h"
-
-#include <algorithm>
-#include <gtest/gtest.h>
-#include <span>
+#include "tests/support/test.h"
 
 std::unique_ptr<tandem::Ranks> tandem::job;
 

@@ -3,12 +3,9 @@
 // to the frame's successor.
 #include "base/error.h"
 #include "tests/ranks/support.h"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
 namespace tandem {
-
 namespace {
 
 const SettingTexts swept{{"motion", "linear"}, {"decision", "exact"}};
@@ -86,5 +83,4 @@ TEST_F(RankMotion, NeedsASuccessor) {
 }
 
 } // namespace
-
 } // namespace tandem

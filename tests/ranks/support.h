@@ -7,9 +7,7 @@
 #include "tests/ranks/job.h"
 #include "tests/support/cells.h"
 #include "tests/support/scenes.h"
-
-#include <fmt/format.h>
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
 namespace tandem {
 

@@ -6,8 +6,7 @@
 #include "tests/support/cells.h"
 #include "tests/support/prepared_trees.h"
 #include "tests/support/scenes.h"
-
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
 namespace tandem::support {
 

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <set>
+#include <sstream>
 
 namespace tandem::support {
 
@@ -57,6 +58,33 @@ inline std::string device_label(const std::string& device) {
 inline bool declares(const Traversal& traversal, std::string_view setting) {
     const auto all = traversal.parameters();
     return std::any_of(all.begin(), all.end(), [&](const auto* p) { return p->name == setting; });
+}
+
+/// Settings written as "k=8 precision=double".
+inline SettingTexts texts(const std::string& words) {
+    SettingTexts result;
+    std::istringstream in(words);
+    for (std::string word; in >> word;) {
+        const auto end = word.find('=');
+        result[word.substr(0, end)] = word.substr(end + 1);
+    }
+    return result;
+}
+
+/// The settings over the defaults of the algorithm.
+inline Settings resolved(const Traversal& traversal, const SettingTexts& given = {}) {
+    return resolve(traversal.parameters(), {}, given, traversal.name());
+}
+
+/// A session on one device.
+inline std::unique_ptr<Session> prepare_on(Device& on, const Traversal& traversal, const Scene& scene,
+                                           const Settings& settings) {
+    const std::array devices{&on};
+    return traversal.prepare(devices, scene, settings);
+}
+inline std::unique_ptr<Session> prepare_on(Device& on, const Traversal& traversal, const Scene& scene,
+                                           const SettingTexts& given = {}) {
+    return prepare_on(on, traversal, scene, resolved(traversal, given));
 }
 
 /// Every data path of the algorithm.

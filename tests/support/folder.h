@@ -2,12 +2,10 @@
 #pragma once
 
 #include "base/error.h"
+#include "tests/support/message_of.h"
+#include "tests/support/test.h"
 
-#include <filesystem>
-#include <fstream>
-#include <gtest/gtest.h>
 #include <iterator>
-#include <string>
 #include <unistd.h>
 
 namespace tandem::support {
@@ -33,17 +31,6 @@ inline std::string bytes_of(const std::string& path) {
 
 inline void write_bytes(const std::string& path, std::string_view bytes) {
     std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-}
-
-/// Message of the InputError that `act` throws.
-template<class Act>
-std::string failure_of(Act act) {
-    try {
-        act();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
 }
 
 } // namespace tandem::support

@@ -19,12 +19,6 @@ private:
     Device& device_;
 };
 
-inline std::unique_ptr<Session> prepare_on(Device& on, const Traversal& traversal, const Scene& scene,
-                                           const SettingTexts& given) {
-    const std::array devices{&on};
-    return traversal.prepare(devices, scene, resolve(traversal.parameters(), {}, given, traversal.name()));
-}
-
 /// Bytes that a session needs when every capacity is minimal.
 inline std::size_t least_bytes(Device& on, const Traversal& traversal, const Scene& scene,
                                SettingTexts given) {

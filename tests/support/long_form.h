@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cstdlib>
+#include "tests/support/test.h"
 
 namespace tandem::support {
 
@@ -10,3 +10,9 @@ namespace tandem::support {
 inline bool long_form() { return std::getenv("TANDEM_LONG_FORM") != nullptr; }
 
 } // namespace tandem::support
+
+/// Ends a test of the short form on a device other than the host, for which kernels would compile too long.
+#define TANDEM_LONG_FORM_ONLY(device)                                                                        \
+    if (std::string_view(device) != "host" && !tandem::support::long_form())                                 \
+    GTEST_SKIP() << "long form "                                                                             \
+                    "only"

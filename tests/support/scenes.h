@@ -5,17 +5,13 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "scenes/scene.h"
+#include "tests/support/message_of.h"
 
 namespace tandem::support {
 
 /// Message of make_scene() for a specification that it rejects.
 inline std::string failure(const std::string& specification) {
-    try {
-        make_scene(specification);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
+    return message_of([&] { make_scene(specification); });
 }
 
 /// A mesh with a separate tetrahedron at each position.

@@ -6,7 +6,7 @@
 tandem.stageOrder = ["preprocess", "write", "transform", "refit", "broad", "seed", "traverse", "balance", "sort", "contact", "reduce", "solve",
   "exchange", "read", "postprocess"];
 
-/** Ten colours [on light, on dark background] that readers with any colour blindness can distinguish (tests/report_charts.py measures it). */
+/** Ten colours [on light, on dark background] that readers with any colour blindness can distinguish (tests/report/charts.py measures it). */
 tandem.stageColours = {preprocess: ["#aa88aa", "#776655"], write: ["#223344", "#bbffbb"], transform: ["#552211", "#ffff88"],
   refit: ["#3399ee", "#00aaaa"], broad: ["#441166", "#cc99ff"], seed: ["#ee6666", "#88aa66"], traverse: ["#0055bb", "#446699"],
   balance: ["#994411", "#995500"], contact: ["#bb8811", "#ddaa33"], read: ["#665588", "#33ffee"]};

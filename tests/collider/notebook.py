@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: MIT
+# test: cost=40 full=20 needs=TANDEM_BUILDS_PYTHON
+"""The cells of python/example.ipynb run, and the committed outputs are those of
+scripts/notebook: of every cell the same kinds, and the same texts where no time is measured. They name no
+path or host of the machine."""
+
+import json
+import os
+import re
+import shutil
+import socket
+import subprocess
+import sys
+
+from tests.collider.case import FOLDER
+from tests.program import PROGRAM, SOURCE, Case
+
+MEASURED = "measured"  # the name of times of this machine
+
+
+def cells(notebook):
+    return [cell for cell in json.loads(notebook.read_text())["cells"] if cell["cell_type"] == "code"]
+
+
+def outputs(cell):
+    """The kind, the representations and the text of each output."""
+    return [
+        (
+            one["output_type"],
+            sorted(one.get("data", {})),
+            "".join(one.get("text", one.get("data", {}).get("text/plain", ""))),
+        )
+        for one in cell["outputs"]
+    ]
+
+
+class Notebook(Case):
+    def run_cells(self):
+        """Runs a copy of the notebook, beside copies of what it reads."""
+        root = self.work / "checkout"
+        for name in ("python/example.ipynb", "scripts/notebook"):
+            (root / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(SOURCE / name, root / name)
+        (root / "results").symlink_to(SOURCE / "results")
+        (root / "build").mkdir()
+        (root / "build/tandem").symlink_to(PROGRAM)
+        out = self.work / "out.ipynb"
+        done = subprocess.run(
+            [sys.executable, root / "scripts/notebook", "--out", out],
+            capture_output=True,
+            text=True,
+            env={**os.environ, "PYTHONPATH": FOLDER.name},
+        )
+        self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
+        return out
+
+    def test_committed_outputs_are_those_of_its_cells(self):
+        committed, made = cells(SOURCE / "python/example.ipynb"), cells(self.run_cells())
+        self.assertEqual(len(committed), len(made))
+        self.assertGreater(len(committed), 10)
+        for count, (old, new) in enumerate(zip(committed, made), start=1):
+            source = "".join(old["source"])
+            with self.subTest(source):
+                self.assertEqual(old["execution_count"], count)
+                mine, expected = outputs(old), outputs(new)
+                if MEASURED in source:
+                    mine, expected = ([row[:2] for row in rows] for rows in (mine, expected))
+                self.assertEqual(mine, expected)
+                self.assertTrue(old["outputs"], "the output is committed")
+
+    def test_uses_the_collider_and_shows_pictures(self):
+        sources = "".join("".join(cell["source"]) for cell in cells(SOURCE / "python/example.ipynb"))
+        for call in (
+            "tandem.Collider(",
+            ".pairs()",
+            ".meeting()",
+            ".contacts()",
+            ".update(",
+            "worlds=",
+            '"run"',
+            "plot_cells(",
+        ):
+            self.assertIn(call, sources)
+        pictures = [
+            one["data"]["image/png"]
+            for cell in cells(SOURCE / "python/example.ipynb")
+            for one in cell["outputs"]
+            if "image/png" in one.get("data", {})
+        ]
+        self.assertGreater(len(pictures), 4)
+        self.assertGreater(min(map(len, pictures)), 2000)
+
+    def test_names_no_machine(self):
+        text = json.dumps([outputs(cell) for cell in cells(SOURCE / "python/example.ipynb")])
+        text += json.dumps(
+            [
+                one.get("data", {}).get("text/html", "")
+                for cell in cells(SOURCE / "python/example.ipynb")
+                for one in cell["outputs"]
+            ]
+        )
+        self.assertIsNone(re.search(r"(/work|/tmp|/home|/root|/usr|/var|/Users)/", text))
+        self.assertNotIn(socket.gethostname(), text)

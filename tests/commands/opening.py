@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: MIT
+# test: cost=5
+"""The backends that a command opens, with drivers that abort any process that
+loads them: TRAP replaces an OpenCL driver, CUDA's and NVML. STUBS has a working driver of CUDA."""
+
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+from tests.program import BUILT, PROGRAM, STUBS
+
+TRAP = BUILT / "libtrap.so"
+SCENE = "pile:bodies=2,frames=1"
+RUN = ("run", SCENE, "--algorithm", "chunked", "--repeat", "1", "--truth", "none")
+
+
+class Opening(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.work = pathlib.Path(folder.name)
+        for name in ("cuda", "icd"):
+            (self.work / name).mkdir()
+        for name in ("libcuda.so.1", "libnvidia-ml.so.1"):
+            (self.work / "cuda" / name).symlink_to(TRAP)
+        (self.work / "icd/trap.icd").write_text(f"{TRAP}\n")
+
+    def tandem(self, *arguments, opencl=True, cuda=True):
+        """Runs the program with traps for the arguments that are true: exit code (negative for a signal), standard
+        output and error."""
+        environment = {**os.environ, "LD_LIBRARY_PATH": str(self.work / "cuda" if cuda else STUBS / "driver")}
+        for name in ("TANDEM_CUPTI", "TANDEM_NVML", "TANDEM_NVRTC"):
+            environment.pop(name, None)
+        if not cuda:
+            environment.update(
+                TANDEM_NVRTC=str(STUBS / "nvrtc/libnvrtc.so"), TANDEM_CUPTI="", TANDEM_NVML="/nonexistent"
+            )
+        if opencl:
+            environment["OCL_ICD_VENDORS"] = f"{self.work}/icd/"
+        done = subprocess.run(
+            [str(PROGRAM), *map(str, arguments)], capture_output=True, text=True, env=environment
+        )
+        return done.returncode, done.stdout, done.stderr
+
+    def test_the_traps_work(self):
+        self.assertLess(self.tandem("devices", cuda=False)[0], 0)
+        self.assertLess(self.tandem("devices", opencl=False)[0], 0)
+        for device in ("opencl:0", "cuda:0", "all", "host,opencl:0", "host+opencl:0"):
+            self.assertLess(self.tandem(*RUN, "--device", device)[0], 0, device)
+
+    def test_host_alone(self):
+        frames = self.work / "arch.frames"
+        for arguments in (
+            (*RUN, "--device", "host"),
+            (*RUN, "--device", "host", "--require", "host"),
+            ("check", SCENE, "--device", "host", "--algorithm", "tiled"),
+            ("accuracy", SCENE, "--device", "host", "--set", "k=6", "--repeat", 1, "--truth-contacts", 1),
+            ("simulate", "block", "--steps", 1, "--device", "host", "-o", frames),
+            ("export", SCENE, "--vtu", self.work / "vtu", "--contacts"),
+            ("devices", "--measure", "--device", "host"),
+            ("algorithms",),
+            ("scenes",),
+            ("completion", "--words", "run", "--set", ""),
+        ):
+            status, out, errors = self.tandem(*arguments)
+            self.assertEqual(status, 0, (arguments, out, errors))
+
+    def test_cuda_alone(self):
+        """The stub runs no kernels: the test checks that only the stub was loaded."""
+        status, out, errors = self.tandem(*RUN, "--device", "cuda:0", "--dry-run", cuda=False)
+        self.assertEqual((status, errors), (0, ""), out)
+        self.assertIn("on cuda:0", out)
+        self.assertEqual(
+            self.tandem(*RUN, "--device", "host", "--require", "cuda", "--dry-run", cuda=False)[0], 0
+        )
+
+    def test_required_devices_are_opened(self):
+        for required in ("opencl", "opencl:0", "cuda"):
+            self.assertLess(self.tandem(*RUN, "--device", "host", "--require", required)[0], 0, required)
+
+    def test_unknown_devices_are_searched_in_every_backend(self):
+        for arguments in (
+            ("--device", "nix"),
+            ("--device", "host:1"),
+            ("--device", "host", "--require", "nix"),
+        ):
+            self.assertLess(self.tandem(*RUN, *arguments)[0], 0, arguments)
+        status, _, errors = self.tandem(*RUN, "--device", "cuda:7", cuda=False, opencl=False)
+        self.assertEqual(status, 2)
+        self.assertRegex(
+            errors,
+            r"unknown device 'cuda:7'; the nearest is 'cuda:0' \(there are: host, (opencl:0, )?cuda:0\)",
+        )

@@ -1,0 +1,223 @@
+# SPDX-License-Identifier: MIT
+# test: cost=15 full=50
+"""tandem paper: steps are listed, run once, resumed and repeated; a failing
+step is reported and does not stop the others. The committed tables and verdicts equal those of the committed
+records; in the long form, every committed file is drawn again. Bad use gives one line."""
+
+import csv
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+os.environ.setdefault("MPLCONFIGDIR", tempfile.gettempdir())
+from tests.program import LONG, PROGRAM, SOURCE
+
+from tandem.commands import paper as command
+from tandem.paper import claims, page
+from tandem.paper.folder import Folder
+from tandem.paper.measuring import MeasuredFolder, chosen, steps_of
+
+COMMITTED = SOURCE / "results/h200/paper"
+FILES = [
+    "index.html",
+    "verdicts.md",
+    "claims.csv",
+    *(f"table{i}.csv" for i in range(1, 8)),
+    *(f"figure{i}.{kind}" for i in range(1, 15) for kind in ("svg", "csv")),
+]
+
+
+def paper(*words, code=0):
+    done = subprocess.run([PROGRAM, "paper", *map(str, words)], capture_output=True, text=True)
+    assert done.returncode == code, (done.returncode, done.stdout, done.stderr)
+    return done
+
+
+class Paper(unittest.TestCase):
+    def setUp(self):
+        self.work = tempfile.TemporaryDirectory(prefix="tandem-paper")
+        self.addCleanup(self.work.cleanup)
+        self.folder = pathlib.Path(self.work.name) / "out"
+        self.host = ("--device", "host", "-o", self.folder)
+
+    def steps(self):
+        return [json.loads(line) for line in (self.folder / "steps.jsonl").read_text().splitlines()]
+
+    def number(self, name, size="small"):
+        lines = paper("--dry-run", "--size", size, *self.host).stdout.splitlines()
+        return next(line.split()[0] for line in lines if line.split()[1] == name)
+
+    def test_every_table_and_figure_has_a_step(self):
+        for size in ("small", "full"):
+            listed = paper("--dry-run", "--size", size, "--device", "host", "-o", self.folder / size).stdout
+            for scene in ("funnel", "glasses", "colosseum", "plates", "tower"):
+                self.assertIn(f"cells-{scene}", listed)
+            self.assertIn("left", listed.splitlines()[-1])
+            self.assertLessEqual(max(step.seconds for step in steps_of(size, "host")), 480)
+
+    def test_steps_by_what_they_show(self):
+        """Tables, figures and names bring the steps that make their recordings; numbers do not."""
+        steps = steps_of("small", "host")
+        names = lambda text: [steps[number].name for number in chosen(text, steps)]
+        self.assertEqual(names("figure13"), ["sim-glasses", "thresholds"])
+        self.assertEqual(names("precision,table2"), ["ceilings", "sim-glasses", "precision"])
+        self.assertEqual(names(self.number("thresholds")), ["thresholds"])
+        self.assertEqual(names("1:2,1"), ["ceilings", "sim-funnel"])
+        self.assertEqual(len(names("")), len(steps))
+        for number in (
+            *(f"table{i}" for i in range(1, 8)),
+            *(f"figure{i}" for i in (1, 2, 3, 4, 5, 6, 9, 10, 11, 12, 13)),
+        ):
+            self.assertTrue(names(number), number)
+
+    def test_bad_use_is_one_line(self):
+        for words, says in (
+            ((), "--output"),
+            (("-o", self.folder, "--size", "huge"), "--size huge: give small or full"),
+            (("-o", self.folder, "--device", "cuda:99"), "cuda:99"),
+            ((*self.host, "--steps", "0:3"), "--steps 0:3"),
+            ((*self.host, "--steps", "3:1"), "--steps 3:1"),
+            ((*self.host, "--steps", "x"), "--steps x"),
+            ((*self.host, "--steps", "1:999"), "give N or FIRST:LAST"),
+            ((*self.host, "--steps", "1,figure99"), "figure99 is no step"),
+            (("-o", self.folder, "--draw-only", "--again"), "--again"),
+            (("-o", self.folder / "none", "--draw-only"), "steps.jsonl"),
+        ):
+            error = paper(*words, code=2).stderr
+            self.assertEqual(error.count("\n"), 1, error)
+            self.assertIn(says, error)
+
+    def test_steps_run_once_and_again_on_request(self):
+        step = self.number("chunks-morton")
+        paper(*self.host, "--steps", step, "--measure-only")
+        first = self.steps()
+        self.assertEqual([(s["step"], s["exit"]) for s in first], [("chunks-morton", 0)])
+        with open(self.folder / "chunks-morton.csv", newline="") as file:
+            self.assertGreater(len(list(csv.DictReader(file))), 1000)
+        paper(*self.host, "--steps", step, "--measure-only")
+        self.assertEqual(self.steps(), first)
+        paper(*self.host, "--steps", step, "--measure-only", "--again")
+        self.assertEqual(len(self.steps()), 2)
+        self.assertIn(
+            "has results of size small on host",
+            paper(*self.host, "--size", "full", "--dry-run", code=2).stderr,
+        )
+
+    def test_measuring_needs_the_standard_library_only(self):
+        step = self.number("chunks-morton")
+        done = subprocess.run(
+            [
+                "/usr/bin/python3",
+                "-S",
+                "-I",
+                PROGRAM.parent / "libexec/tandem/paper",
+                "-o",
+                self.folder,
+                "--device",
+                "host",
+                "--steps",
+                step,
+                "--measure-only",
+            ],
+            capture_output=True,
+            text=True,
+            env={"TANDEM_PROGRAM": str(PROGRAM)},
+        )
+        self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
+        self.assertEqual([s["exit"] for s in self.steps()], [0])
+
+    def test_a_journal_keeps_whole_lines(self):
+        step = self.number("chunks-morton")
+        paper(*self.host, "--steps", step, "--measure-only")
+        journal, whole = self.folder / "steps.jsonl", (self.folder / "steps.jsonl").read_text()
+        journal.write_text(whole + '{"step": "half')
+        paper(*self.host, "--steps", step, "--measure-only")
+        self.assertEqual(
+            (journal.read_text(), (self.folder / "steps.jsonl.torn").read_text()), (whole, '{"step": "half\n')
+        )
+        journal.write_text("no JSON\n")
+        self.assertIn(
+            "steps.jsonl:1: is not a line of 'tandem paper'", paper(*self.host, "--dry-run", code=2).stderr
+        )
+
+    def test_a_failing_step_is_reported_and_stops_no_other(self):
+        first = self.number("glb-tower")  # needs a recording that does not exist
+        last = int(first) + 1
+        error = paper(*self.host, "--steps", f"{first}:{last}", code=3).stderr
+        self.assertIn("step glb-tower ended with 2", error)
+        self.assertEqual([s["exit"] for s in self.steps()], [2, 0])
+        for name in FILES:
+            self.assertTrue((self.folder / name).stat().st_size > 0, name)
+        page = (self.folder / "index.html").read_text()
+        self.assertIn("Step glb-tower ended with 2", page)
+        self.assertIn("plates", (self.folder / "figure6.csv").read_text())
+        self.assertIn("missing", (self.folder / "figure7.csv").read_text())
+
+    def test_a_simulation_resumes_from_its_checkpoint(self):
+        [step] = [step for step in steps_of("small", "host") if step.name == "sim-tower"]
+        folder = MeasuredFolder(self.folder, "small", "host", PROGRAM)
+        self.assertNotIn("--resume", folder.words(step))
+        (self.folder / "tower.frames.checkpoint").touch()
+        self.assertEqual(folder.words(step)[-1], "--resume")
+
+    @unittest.skipUnless(LONG, "simulates")
+    def test_a_simulation_resumes_after_a_signal(self):
+        step = self.number("sim-tower")
+        running = subprocess.Popen(
+            [PROGRAM, "paper", *map(str, self.host), "--steps", step, "--measure-only"],
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        recording = self.folder / "tower.frames.checkpoint"
+        while not recording.exists() and running.poll() is None:
+            time.sleep(0.05)
+        running.send_signal(signal.SIGTERM)
+        self.assertIn("interrupted", running.communicate()[1])
+        self.assertEqual(running.returncode, 143)
+        paper(*self.host, "--steps", step, "--measure-only")
+        self.assertEqual(self.steps()[-1]["exit"], 0)
+        lines = [
+            json.loads(line) for line in (self.folder / "records/sim-tower.jsonl").read_text().splitlines()
+        ]
+        self.assertEqual(sorted({line["step"] for line in lines if line["kind"] == "step"}), list(range(150)))
+
+    def equal_files(self, names):
+        for name in names:
+            self.assertEqual((self.folder / name).read_text(), (COMMITTED / name).read_text(), name)
+
+    def test_committed_tables_and_verdicts_equal_the_records(self):
+        self.folder.mkdir()
+        for table in command.all_tables(Folder(COMMITTED)):
+            table.write(self.folder)
+        command.write_claims(self.folder, claims.all_claims(Folder(COMMITTED)))
+        self.equal_files([*(f"table{i}.csv" for i in range(1, 8)), "claims.csv"])
+
+    def test_markup_is_escaped(self):
+        shutil.copytree(COMMITTED, self.folder, ignore=shutil.ignore_patterns("records", "*.svg", "*.png"))
+        steps = self.steps()
+        steps[0]["says"], steps[0]["command"], steps[0]["exit"] = (
+            "<img src=x onerror=alert(1)>",
+            "tandem </code><script>",
+            3,
+        )
+        (self.folder / "steps.jsonl").write_text("".join(json.dumps(step) + "\n" for step in steps))
+        folder = Folder(self.folder)
+        page.write(folder, [], [], claims.all_claims(folder))
+        text = (self.folder / "index.html").read_text()
+        self.assertNotIn("<img src=x", text)
+        self.assertNotIn("<script", text)
+        self.assertIn("&lt;img src=x", text)
+
+    @unittest.skipUnless(LONG, "draws every figure")
+    def test_committed_files_are_drawn_again_byte_for_byte(self):
+        shutil.copytree(COMMITTED, self.folder)
+        for name in FILES:
+            (self.folder / name).unlink()
+        self.assertIn("7 tables", paper("-o", self.folder, "--draw-only").stdout)
+        self.equal_files(name for name in FILES if not name.endswith(".svg"))

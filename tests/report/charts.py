@@ -1,0 +1,294 @@
+# SPDX-License-Identifier: MIT
+# test: cost=12
+"""Charts of `tandem report` in Chromium: colours and order of stages, axes
+with 0, names of points and kernels, warnings, titles."""
+
+import json
+import re
+
+import numpy
+from tests.program import SOURCE
+from tests.report.case import RECORDS, ReportCase
+
+# Colour blindness as matrices on linear RGB, of severity 1: Machado, Oliveira and Fernandes, A
+# Physiologically-based Model for Simulation of Color Vision Deficiency, IEEE TVCG 15(6), 2009.
+SIGHTS = {
+    "all colours": numpy.eye(3),
+    "protanopia": [
+        [0.152286, 1.052583, -0.204868],
+        [0.114503, 0.786281, 0.099216],
+        [-0.003882, -0.048116, 1.051998],
+    ],
+    "deuteranopia": [
+        [0.367322, 0.860646, -0.227968],
+        [0.280085, 0.672501, 0.047413],
+        [-0.011820, 0.042940, 0.968881],
+    ],
+    "tritanopia": [
+        [1.255528, -0.076749, -0.178779],
+        [-0.078411, 0.930809, 0.147602],
+        [0.004733, 0.691367, 0.303900],
+    ],
+}
+XYZ = numpy.array(
+    [[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.0721750], [0.0193339, 0.1191920, 0.9503041]]
+)
+LEAST_DISTANCE = 20  # of CIE 1976 L*a*b*; 2.3 is just noticeable
+LEAST_CONTRAST = 3  # WCAG 2.1, 1.4.11
+
+
+def linear(text):
+    """Linear red, green and blue of "#rrggbb"."""
+    parts = numpy.array([int(text[i : i + 2], 16) / 255 for i in (1, 3, 5)])
+    return numpy.where(parts <= 0.04045, parts / 12.92, ((parts + 0.055) / 1.055) ** 2.4)
+
+
+def lab(rgb):
+    x, y, z = (
+        value ** (1 / 3) if value > 0.008856 else 7.787 * value + 16 / 116
+        for value in XYZ @ rgb / (0.95047, 1, 1.08883)
+    )
+    return numpy.array([116 * y - 16, 500 * (x - y), 200 * (y - z)])
+
+
+def distances(colours):
+    """(distance, sight, colour, colour) of all pairs, for each kind of sight."""
+    for sight, matrix in SIGHTS.items():
+        seen = [lab(numpy.clip(matrix @ linear(colour), 0, 1)) for colour in colours]
+        for i, first in enumerate(seen):
+            yield from (
+                (numpy.linalg.norm(first - second), sight, colours[i], colours[j])
+                for j, second in enumerate(seen[:i])
+            )
+
+
+def contrast(a, b):
+    low, high = sorted(float(XYZ[1] @ linear(colour)) for colour in (a, b))
+    return (high + 0.05) / (low + 0.05)
+
+
+class Charts(ReportCase):
+    def chart(self, figure, script):
+        """The value of an expression of `chart`, the drawn chart of a figure."""
+        return self.browser.run(
+            f"(() => {{ const chart = Chart.getChart(document.querySelector('#{figure} canvas')); return {script}; }})()"
+        )
+
+    def ticks(self, figure, axis="x"):
+        return self.chart(figure, f"chart.scales.{axis}.ticks.map(tick => tick.label)")
+
+    def opened_with(self, *records):
+        self.opened(self.report(self.write("some.jsonl", records)))
+
+    def staged(self, **stages):
+        """A record with these milliseconds of its stages."""
+        record = json.loads(json.dumps(self.plan[0]))
+        frames = record["frames"]["last"] - record["frames"]["first"] + 1
+        one = next(iter(record["stages"].values()))
+        record["stages"] = {
+            name: {**one, "device_ns": {**one["device_ns"], "median": ms * 1e6 * frames}}
+            for name, ms in stages.items()
+        }
+        return record
+
+    def test_every_stage_has_one_fill(self):
+        self.opened_with(self.plan[0])
+        header = (SOURCE / "backends/trace.h").read_text()
+        stages = re.findall(r'"(\w+)"', header[header.index("stage_names{") :])
+        order, colours, striped = (
+            self.browser.run(f"tandem.{name}") for name in ("stageOrder", "stageColours", "stripedStages")
+        )
+        self.assertEqual(sorted(order), sorted(stages))
+        self.assertEqual(sorted([*colours, *striped]), sorted(stages))
+        self.assertEqual(len(set(striped.values())), len(striped))
+        for dark in (False, True):
+            self.browser.dark(dark)
+            ground = self.browser.run("tandem.ofStyle('--ground')")
+            shown = [pair[dark] for pair in colours.values()]
+            self.assertEqual(len(shown), 10)
+            self.assertGreater(min(distances(shown)), (LEAST_DISTANCE,))
+            self.assertGreaterEqual(
+                min((contrast(colour, ground), colour) for colour in shown), (LEAST_CONTRAST,)
+            )
+
+    def test_stages_are_in_order_and_small_ones_are_folded(self):
+        self.opened_with(self.staged(read=0.02, contact=0.3, traverse=0.5, seed=0.01, refit=0.2, made_up=0.1))
+        self.draw("stages")
+        self.assertEqual(
+            self.chart("stages", "chart.data.datasets.map(one => one.label)"),
+            ["refit", "traverse", "contact", "made_up", "small stages"],
+        )
+        self.assertAlmostEqual(self.chart("stages", "chart.data.datasets[4].data[0]"), 0.03, 5)
+        self.assertEqual(
+            self.text("#stages .quiet"), "Small stages, each below 3 % of every bar: seed, read."
+        )
+        self.assertEqual(
+            self.browser.run("[...document.querySelectorAll('#stages th')].map(head => head.textContent)"),
+            ["cell", "refit", "traverse", "contact", "made_up", "seed", "read"],
+        )
+        self.assertTrue(
+            self.text("#stages h3").startswith("The stage traverse takes 44 % of the time of "),
+            self.text("#stages h3"),
+        )
+
+    def test_a_colour_does_not_depend_on_other_stages(self):
+        colours = []
+        for stages in ({"refit": 1, "traverse": 1}, {"balance": 1, "contact": 1, "traverse": 1, "seed": 0.5}):
+            self.opened_with(self.staged(**stages))
+            self.draw("stages")
+            colours.append(
+                self.chart(
+                    "stages", "chart.data.datasets.find(one => one.label === 'traverse').backgroundColor"
+                )
+            )
+        self.assertEqual(colours[0], colours[1])
+        self.assertEqual(colours[0], self.browser.run("tandem.stageColours.traverse[0]"))
+
+    def swept(self, values):
+        """The first cell with these values of a setting, each slower than the one before."""
+        for i, value in enumerate(values):
+            record = json.loads(json.dumps(self.plan[0]))
+            record["settings"]["seed_threshold"], record["key"] = str(value), f"{record['key']}|{value}"
+            record["total_ns"]["samples"] = [ns * (1 + i) for ns in record["total_ns"]["samples"]]
+            yield record
+
+    def test_a_sweep_is_logarithmic_with_a_tick_at_0(self):
+        self.opened_with(*self.swept([1000, 0, 10, 100000, 1]))
+        self.draw("sweeps")
+        self.assertEqual(self.ticks("sweeps"), ["0", "1", "10", "1,000", "100,000"])
+        places = self.chart("sweeps", "chart.getDatasetMeta(0).data.map(point => point.x)")
+        gaps = [after - before for before, after in zip(places, places[1:])]
+        self.assertAlmostEqual(gaps[2], 2 * gaps[1], delta=1)
+        self.assertAlmostEqual(gaps[3], gaps[2], delta=1)
+        self.assertGreater(gaps[0], 20)
+        self.assertEqual(
+            self.chart(
+                "sweeps",
+                "chart.options.plugins.tooltip.callbacks.label({dataset: chart.data.datasets[0], dataIndex: 0}).includes('seed_threshold = 0: ')",
+            ),
+            True,
+        )
+        self.assertTrue(
+            self.text("#sweeps h3").startswith(
+                "seed_threshold = 1000 is the fastest; the next takes 2.000 times as long ["
+            ),
+            self.text("#sweeps h3"),
+        )
+
+    def test_one_round_has_the_same_words_everywhere(self):
+        records = list(self.swept([0, 1, 2]))
+        for record in records:
+            total = record["total_ns"]
+            total.update({name: total[name][:1] for name in ("samples", "rounds", "frames")})
+        self.opened_with(*records)
+        for where in (
+            "#summary li",
+            "#medians h3",
+            "#medians tbody tr",
+            "#medians tbody tr:last-child",
+            "#sweeps h3",
+            "#sweeps tbody tr",
+            "#cell-table tbody tr",
+        ):
+            self.assertIn("one round: no interval", self.text(where), where)
+        self.assertNotIn("the fastest", self.text("#summary") + self.text("#charts"))
+
+    def test_errors_have_names_and_an_axis_of_powers(self):
+        self.opened(self.report(SOURCE / "tests/records/accuracy.jsonl"))
+        self.draw("error")
+        self.assertRegex(" ".join(self.ticks("error")), r"^10⁻¹⁶ 10⁻¹⁴ .* 0\.01 1$")
+        drawn = self.chart("error", "chart.namesDrawn")
+        unbeaten = self.chart("error", "chart.data.datasets[0].names")
+        self.assertGreaterEqual(len(set(drawn) & set(unbeaten)), 3)
+        self.assertGreater(len(drawn), len(unbeaten))
+        self.assertTrue(
+            self.text("#error h3").startswith(
+                "sat fp64 safe double has the least error; its median time is "
+            ),
+            self.text("#error h3"),
+        )
+
+    def test_an_error_of_0_has_its_own_tick(self):
+        self.opened_with(self.plan[0])
+        ticks = self.browser.run(
+            "tandem.logScale('error', [0, 1e-7, 0.002, 1], false).ticks.map(tick => tick.text)"
+        )
+        self.assertEqual((ticks[0], ticks[1], ticks[-1]), ("0", "10⁻⁷", "1"))
+        self.assertEqual(
+            self.browser.run(
+                "tandem.logScale('error', [1e-7, 0.002, 1], false).ticks.map(tick => tick.text)"
+            )[0],
+            "10⁻⁷",
+        )
+
+    def test_kernels_in_words_and_warnings(self):
+        record = json.loads((RECORDS / "profile.jsonl").read_text().splitlines()[0])
+        self.opened(self.report(self.write("profile.jsonl", [record])))
+        self.assertEqual(self.browser.run("document.querySelectorAll('#roofline .bad').length"), 0)
+        self.assertTrue(
+            self.text("#roofline h3").startswith(
+                "The kernel that generates contacts takes 32 % of the kernels' time"
+            ),
+            self.text("#roofline h3"),
+        )
+        self.assertRegex(
+            self.text("#roofline .quiet"),
+            "Ceilings: measured before the kernels in the same run, 2026-11-23T20:36:31Z; that of cached bytes with 16,777,216 bytes. .*GPU at 1980 MHz, 40 to 47 °C",
+        )
+        self.draw("roofline")
+        self.assertIn("walk leaf tiles", self.chart("roofline", "chart.data.datasets.map(one => one.label)"))
+        record["kernels"][1]["of_operations"], record["ceilings"]["from"] = 1.25, "some/ceilings.jsonl"
+        self.opened(self.report(self.write("profile.jsonl", [record])))
+        self.assertTrue(
+            self.text("#roofline .bad").startswith(
+                "Warning: the kernel that walks leaf tiles reaches 125 % of the ceiling of comparisons. "
+            )
+        )
+        self.assertIn("from ceilings.jsonl, measured 2026-11-23", self.text("#roofline .quiet"))
+
+    def test_entries_of_all_kernels_become_sentences(self):
+        """All entries begin with a verb of which the third person is known."""
+        entries = sorted(
+            {
+                entry
+                for path in SOURCE.glob("algorithms/**/*.cl")
+                for entry in re.findall(r"^KERNEL void (\w+)\(", path.read_text(), re.M)
+            }
+        )
+        self.assertGreater(len(entries), 50)
+        self.opened_with(self.plan[0])
+        does = dict(zip(entries, self.browser.run(f"{json.dumps(entries)}.map(tandem.kernelDoes)")))
+        self.assertEqual(
+            [
+                does[entry]
+                for entry in (
+                    "certify_pairs",
+                    "copy_leaf_bounds",
+                    "query_leaves",
+                    "traverse_in_groups",
+                    "refit_strips",
+                )
+            ],
+            [
+                "certifies pairs",
+                "copies leaf bounds",
+                "queries leaves",
+                "traverses in groups",
+                "refits strips",
+            ],
+        )
+        self.assertEqual(
+            [text for text in does.values() if "_" in text or not re.match(r"[a-z]+s\b", text)], []
+        )
+
+    def test_ceilings_have_their_conditions(self):
+        self.opened(self.report(RECORDS / "ceilings.jsonl"))
+        rows = dict(
+            self.browser.run(
+                "[...document.querySelectorAll('#others tbody tr')].map(row => [row.children[0].textContent, row.children[1].textContent])"
+            )
+        )
+        self.assertEqual(
+            (rows["measured on"], rows["compiler"], rows["commit"]),
+            ("2026-11-21T08:24:58Z", "g++ 13.3.0", "bb7907e8d826"),
+        )

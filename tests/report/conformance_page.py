@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: MIT
+# test: cost=4
+"""scripts/conformance on device host, with this program, with one whose
+answers are wrong, one that finds no pairs, one that fails, and one that a driver ends."""
+
+import json
+import subprocess
+
+from tests.program import PROGRAM, SOURCE, Case
+
+# Runs the program, then edits the file of records.
+WRAPPER = """#!/usr/bin/python3
+import os, pathlib, re, signal, subprocess, sys
+done = subprocess.run([{program!r}, *sys.argv[1:]])
+if sys.argv[1] == "check":
+    out = pathlib.Path(sys.argv[sys.argv.index("--out") + 1])
+    if {crash}:
+        if "leaf_query" in sys.argv[sys.argv.index("--algorithm") + 1]:
+            out.unlink()
+            os.kill(os.getpid(), signal.SIGSEGV)
+        sys.exit(done.returncode)
+    if {end}:
+        sys.exit("tandem: no memory")
+    text = out.read_text()
+    if {empty}:
+        out.write_text(re.sub('"count":[0-9]+', '"count":0', text))
+        sys.exit(0)
+    out.write_text(text.replace('"missing":0', '"missing":7').replace('"status":"ok"', '"status":"wrong"'))
+    sys.exit(1)
+sys.exit(done.returncode)
+"""
+
+
+class ConformancePage(Case):
+    def conformance(self, program, *more):
+        page = self.work / "page.md"
+        done = subprocess.run(
+            [
+                "/usr/bin/python3",
+                SOURCE / "scripts/conformance",
+                "--program",
+                program,
+                "--device",
+                "host",
+                "--k",
+                "8",
+                "--algorithm",
+                "tiled",
+                "-o",
+                page,
+                *more,
+            ],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        return done.returncode, done.stdout, done.stderr, page.read_text() if page.exists() else ""
+
+    def other(self, end=False, empty=False, crash=False):
+        path = self.work / f"other{end}{empty}{crash}"
+        path.write_text(WRAPPER.format(program=str(PROGRAM), end=end, empty=empty, crash=crash))
+        path.chmod(0o755)
+        return path
+
+    def test_right(self):
+        code, text, errors, page = self.conformance(PROGRAM)
+        self.assertEqual((code, errors), (0, ""), text)
+        self.assertIn("Presets: tiled (resident).", page)
+        self.assertNotIn("## host", page)
+        self.assertRegex(page, r"\| host [^|]* \| float: k = 8; double: k = 8 \| 2 \| 2 \|")
+
+    def test_wrong(self):
+        code, text, errors, page = self.conformance(self.other())
+        self.assertEqual((code, errors), (1, ""), text)
+        self.assertIn("| tiled | resident | 7 missing | 7 missing |", page)
+        self.assertRegex(page, r"\| host [^|]* \| float: k = 8; double: k = 8 \| 2 \| 0 \|")
+
+    def test_failing(self):
+        code, text, _, page = self.conformance(self.other(end=True))
+        self.assertEqual(code, 1, text)
+        self.assertIn("- k = 8, float; k = 8, double: tandem: no memory", page)
+
+    def test_a_driver_that_ends_the_process(self):
+        """The cells of the other algorithms are on the page."""
+        code, text, errors, page = self.conformance(self.other(crash=True), "--algorithm", "tiled,leaf_query")
+        self.assertEqual((code, errors), (1, ""), text)
+        self.assertIn(
+            "- k = 8, float; k = 8, double: leaf_query: the driver ended the process (SIGSEGV)", page
+        )
+        self.assertRegex(page, r"\| host [^|]* \| float: k = 8; double: k = 8 \| 2 \| 2 \|")
+
+    def test_an_empty_answer_shows_nothing(self):
+        code, text, errors, page = self.conformance(self.other(empty=True))
+        self.assertEqual((code, errors), (1, ""), text)
+        self.assertIn("| tiled | resident | no pairs | no pairs |", page)
+
+    def test_columns_are_kept_and_digests_compared(self):
+        """A second call finds its columns; those of another device join the page, and a different digest is
+        an error."""
+        kept = self.work / "kept.json"
+        self.assertEqual(self.conformance(PROGRAM, "--keep", kept)[0], 0)
+        columns = kept.read_text()
+        code, text, _, page = self.conformance(self.other(end=True), "--keep", kept)
+        self.assertEqual((code, kept.read_text()), (0, columns), text)
+        both = json.loads(columns)
+        ((name, first),) = both["results"].items()
+        both["results"]["other device"] = first
+        kept.write_text(json.dumps(both))
+        code, _, _, page = self.conformance(PROGRAM, "--keep", kept)
+        self.assertEqual(code, 0)
+        self.assertIn("2 cells were right on two devices or more; their digests are equal in 2.", page)
+        self.assertIn("| other device | float: k = 8; double: k = 8 | 2 | 2 |", page)
+        both["results"]["other device"] = {
+            title: {**column, "digests": {"tiled resident": "{}"}} for title, column in first.items()
+        }
+        kept.write_text(json.dumps(both))
+        code, text, _, page = self.conformance(PROGRAM, "--keep", kept)
+        self.assertEqual(code, 1)
+        self.assertIn("tiled resident, k = 8, float: 2 different digests", text)
+        self.assertIn("- tiled resident, k = 8, float: 2 different digests", page)
+        kept.write_text(json.dumps({**both, "version": "another"}))
+        self.assertIn("is of another program (another)", self.conformance(PROGRAM, "--keep", kept)[2])
+
+    def test_no_such_device(self):
+        code, _, errors, _ = self.conformance(PROGRAM, "--device", "cuda:99")
+        self.assertEqual(code, 1)
+        self.assertRegex(errors, "^conformance: no device cuda:99; there are: host, ")

@@ -1,0 +1,466 @@
+# SPDX-License-Identifier: MIT
+# test: cost=12 full=50
+"""The Python package, from its wheel alone: it reads the values of tandem
+export --csv from the committed records, and its comparisons equal tandem compare. Figures name the best
+cells, and bad files give one line."""
+
+import csv
+import dataclasses
+import io
+import json
+import lzma
+import math
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+import warnings
+import zipfile
+
+import matplotlib
+import pandas
+
+from tests.program import LONG, PROGRAM, SOURCE
+
+matplotlib.use("agg")
+H200 = SOURCE / "results/h200"
+
+
+def setUpModule():
+    """Builds the wheel of a copy of the package's sources without its compiled part, and imports the package from
+    there."""
+    global tandem, FOLDER
+    FOLDER = tempfile.TemporaryDirectory(prefix="tandem-package")
+    copy = pathlib.Path(FOLDER.name) / "source"
+    shutil.copytree(SOURCE / "python", copy / "python", ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(SOURCE / "results/paper", copy / "results/paper")
+    for name in ("pyproject.toml", "LICENSE", "NOTICE.md", "CITATION.cff", "scripts/render"):
+        (copy / name).parent.mkdir(exist_ok=True)
+        shutil.copy(SOURCE / name, copy / name)
+    tools = SOURCE / ".cache/python"
+    assert tools.exists(), "scikit-build-core is missing; scripts/setup fetches it"
+    code = "import sys; from scikit_build_core.build import build_wheel; build_wheel(sys.argv[1], {'wheel.cmake': 'false'})"
+    done = subprocess.run(
+        [sys.executable, "-c", code, FOLDER.name],
+        cwd=copy,
+        capture_output=True,
+        text=True,
+        env={**os.environ, "PYTHONPATH": str(tools)},
+    )
+    assert done.returncode == 0, done.stderr
+    (wheel,) = pathlib.Path(FOLDER.name).glob("*.whl")
+    unpacked = pathlib.Path(FOLDER.name) / "unpacked"
+    zipfile.ZipFile(wheel).extractall(unpacked)
+    sys.path.insert(0, str(unpacked))
+    import tandem
+
+    assert pathlib.Path(tandem.__file__).is_relative_to(unpacked)
+
+
+def tearDownModule():
+    FOLDER.cleanup()
+
+
+class Metadata(unittest.TestCase):
+    def test_the_distribution_has_a_name_of_its_own(self):
+        """PyPI has another distribution tandem."""
+        (wheel,) = pathlib.Path(FOLDER.name).glob("*.whl")
+        self.assertTrue(wheel.name.startswith("tandem_bvh-"), wheel.name)
+        names = zipfile.ZipFile(wheel).namelist()
+        self.assertIn("tandem/__init__.py", names)
+        (metadata,) = (name for name in names if name.endswith("/METADATA"))
+        self.assertIn("\nName: tandem-bvh\n", zipfile.ZipFile(wheel).read(metadata).decode())
+
+
+def text_of(value):
+    """In the format of export --csv."""
+    if pandas.isna(value):
+        return ""
+    return str(value).lower() if str(value) in ("True", "False") else str(value)
+
+
+class Reading(unittest.TestCase):
+    def test_cells_equal_the_table_of_export(self):
+        for committed in sorted([*H200.glob("*.jsonl"), *(SOURCE / "results/cpu").glob("*.jsonl")]):
+            path = pathlib.Path(FOLDER.name) / committed.name
+            lines = committed.read_text().splitlines(keepends=True)
+            path.write_text("".join(lines if LONG else lines[:: -(-len(lines) // 20)]))
+            done = subprocess.run([PROGRAM, "export", path, "--csv"], capture_output=True, text=True)
+            if done.returncode != 0:  # not records of cells
+                with self.assertRaises(tandem.RecordError, msg=path.name):
+                    tandem.read(path)
+                continue
+            with self.subTest(path.name):
+                cells = tandem.read(path).cells
+                rows = list(csv.reader(io.StringIO(done.stdout)))
+                self.assertEqual([*rows[0], "file", "partial"], list(cells.columns))
+                self.assertEqual(len(rows) - 1, len(cells))
+                for name, *texts in zip(*rows):
+                    for value, text in zip(cells[name], texts):
+                        if name in ("ms", "ms_low", "ms_high") or name.endswith("_ms"):
+                            self.assertEqual(text, "" if math.isnan(value) else f"{value:.9g}", name)
+                        elif name == "date":
+                            self.assertEqual(text, value.strftime("%Y-%m-%dT%H:%M:%SZ"))
+                        elif text != text_of(value):  # 1e+06 is 1000000.0
+                            self.assertEqual(float(text), float(value), name)
+
+    def test_other_frames_are_of_the_same_records(self):
+        path = H200 / "plan.jsonl"
+        records = tandem.read(str(path))
+        with open(path) as file:
+            raw = [json.loads(line) for line in file]
+        cell = next(
+            i
+            for i, record in enumerate(raw)
+            if record["algorithm"] == "gproximity" and record["preset"] == "fair"
+        )
+        record, frames = raw[cell], raw[cell]["frames"]["last"] - raw[cell]["frames"]["first"] + 1
+        mine = records.of([cell])
+        self.assertEqual(list(mine.cells.index), [cell])
+        self.assertEqual(
+            [round(ms * frames * 1e6) for ms in mine.samples["ms"]], record["total_ns"]["samples"]
+        )
+        self.assertEqual(list(mine.samples["round"]), record["total_ns"]["rounds"])
+        self.assertEqual(set(mine.stages["stage"]), set(record["stages"]))
+        balance = mine.stages[mine.stages["stage"] == "balance"].iloc[0]
+        self.assertAlmostEqual(
+            balance["device_ms"], record["stages"]["balance"]["device_ns"]["median"] / frames / 1e6
+        )
+        self.assertEqual(balance["launches"], record["stages"]["balance"]["launches"])
+        self.assertEqual(
+            set(mine.kernels["kernel"]),
+            {kernel["entry"] for kernel in record["kernels"]} | set(record["kernel_times"]),
+        )
+        self.assertEqual(list(mine.frames["candidate_pairs"]), record["work"]["candidate_pairs"])
+        self.assertEqual(len(records.cells), len(raw))
+        self.assertGreater(records.frames["ms"].min(), 0)
+
+    def test_errors_equal_those_of_the_truth(self):
+        records = tandem.read(SOURCE / "tests/records/accuracy.jsonl")
+        written = [
+            json.loads(line) for line in (SOURCE / "tests/records/accuracy.jsonl").read_text().splitlines()
+        ]
+        self.assertEqual(
+            set(records.errors["cell"]), {i for i, r in enumerate(written) if r["error"]["truth"]}
+        )
+        for row in records.errors.itertuples():
+            truth = written[row.cell]["error"]["truth"]
+            if row.error == "false_share":
+                self.assertAlmostEqual(row.median, truth["false"] / truth["candidates"])
+            elif row.error == "missed_share":
+                missed = truth["missed_touching"] + truth["missed_overlapping"]
+                self.assertAlmostEqual(
+                    row.median, missed / (missed + truth["touching"] + truth["overlapping"])
+                )
+            else:
+                self.assertEqual(
+                    {"median": row.median, "p99": row.p99, "max": row.max}, truth["contacts"][row.error]
+                )
+
+    def test_several_files_and_packed_ones(self):
+        one, packed = H200 / "convert.jsonl", H200 / "seeds.jsonl"
+        other = pathlib.Path(FOLDER.name) / "seeds.jsonl.xz"
+        other.write_bytes(lzma.compress(packed.read_bytes(), preset=0))
+        cells = tandem.read([one, other]).cells
+        self.assertEqual(list(cells["file"].unique()), [str(one), str(other)])
+        self.assertEqual(len(cells), len(tandem.read(one).cells) + len(tandem.read(packed).cells))
+
+    def test_every_result_occurs_once(self):
+        """An interrupted cell, its continuation in another session, copies, and two contradicting records."""
+        line = json.loads((H200 / "plan.jsonl").read_text().splitlines()[0])
+        rounds = sorted(set(line["total_ns"]["rounds"]))
+
+        def with_rounds(count, session, factor=1, **fields):
+            record = json.loads(json.dumps(line | fields))
+            total = record["total_ns"]
+            kept = [i for i, of in enumerate(total["rounds"]) if of in rounds[:count]]
+            total["samples"], total["rounds"] = (
+                [total["samples"][i] * factor for i in kept],
+                [total["rounds"][i] for i in kept],
+            )
+            record["session"], record["sampling"] = (
+                session,
+                record["sampling"] | {"interrupted": count < len(rounds)},
+            )
+            return json.dumps(record) + "\n"
+
+        begun, whole, other = (
+            with_rounds(3, "a"),
+            with_rounds(len(rounds), "b"),
+            with_rounds(len(rounds), "c", 2),
+        )
+        with tempfile.TemporaryDirectory() as folder:
+
+            def read(*texts):
+                files = []
+                for number, text in enumerate(texts):
+                    files.append(pathlib.Path(folder) / f"{number}.jsonl")
+                    files[-1].write_text(text)
+                cells = tandem.read(files).cells
+                return list(zip(cells["session"], cells["partial"]))
+
+            self.assertEqual(read(begun), [("a", True)])
+            self.assertEqual(read(begun, whole), [("b", False)])
+            self.assertEqual(read(whole + begun + whole, whole, other), [("b", False), ("c", False)])
+            # measured again without the rounds of the interrupted cell; not by another program, nor if it
+            # failed
+            self.assertEqual(read(with_rounds(5, "a", 2), whole), [("b", False)])
+            self.assertEqual(read(whole, with_rounds(5, "a", 2)), [("b", False), ("a", True)])
+            environment = line["environment"] | {"sources": "77"}
+            self.assertEqual(
+                read(with_rounds(5, "a", 2), with_rounds(len(rounds), "b", environment=environment)),
+                [("a", True), ("b", False)],
+            )
+            gpus = [{**line["devices"][0], "id": f"cuda:{i}"} for i in range(2)]
+            self.assertEqual(
+                len(read(with_rounds(9, "s", devices=gpus[:1]), with_rounds(9, "s", 2, devices=gpus[1:]))), 2
+            )
+            with self.assertRaises(tandem.RecordError) as caught:
+                read(whole, begun + with_rounds(len(rounds), "b", 2))
+            self.assertIn("0.jsonl:1 and ", str(caught.exception))
+            self.assertIn("1.jsonl:2: different records of one cell in one run", str(caught.exception))
+
+    def test_bad_files_are_one_line(self):
+        good = (H200 / "seeds.jsonl").read_text().splitlines()[0]
+        without = json.dumps({name: value for name, value in json.loads(good).items() if name != "frames"})
+        for text, words in (
+            (f"{good}\nnot json\n", ":2: is not JSON"),
+            ("[1]\n", ":1: is no record of a cell"),
+            ("[" * 100000 + "\n", ":1: is not JSON"),
+            (good.replace('"schema":4', '"schema":1', 1) + "\n", "scripts/convert_records"),
+            (good.replace('"schema":4', '"schema":9', 1) + "\n", "schema 9"),
+            (f"{without}\n", "record"),
+            ("", "is empty"),
+        ):
+            with tempfile.NamedTemporaryFile("w", suffix=".jsonl") as file:
+                file.write(text)
+                file.flush()
+                for function in (tandem.read, lambda name: tandem.compare(name, name)):
+                    with self.assertRaises(tandem.RecordError) as caught:
+                        function(file.name)
+                    self.assertIn(words, str(caught.exception))
+                    self.assertTrue(str(caught.exception).startswith(file.name))
+                    self.assertNotIn("\n", str(caught.exception))
+        for name in ("/nowhere/run.jsonl", "/"):
+            with self.assertRaisesRegex(tandem.RecordError, "cannot be read"):
+                tandem.read(name)
+        with self.assertRaises(tandem.RecordError):
+            tandem.read([])
+
+    def test_a_torn_line_gives_a_warning(self):
+        good = (H200 / "seeds.jsonl").read_text().splitlines()[0]
+        with tempfile.NamedTemporaryFile("w", suffix=".jsonl") as file:
+            file.write(good + "\n" + good[:100])
+            file.flush()
+            with self.assertWarnsRegex(UserWarning, ":2: the last line has no end"):
+                self.assertEqual(len(tandem.read(file.name).cells), 1)
+
+
+class Comparing(unittest.TestCase):
+    def expect_same(self, old, new):
+        done = subprocess.run(
+            [PROGRAM, "compare", old, new, "--format", "json"], capture_output=True, text=True
+        )
+        expected = json.loads(done.stdout)
+        mine = tandem.compare(old, new)
+        self.assertEqual(mine.changed, expected["changed"])
+        self.assertEqual(len(mine.cells), len(expected["cells"]))
+        for cell in expected["cells"]:
+            row = mine.cells.loc[cell["key"]]
+            self.assertEqual(row["verdict"], cell["verdict"])
+            self.assertEqual(row["paired"], cell["paired"])
+            for name in ("ratio", "low", "high", "p", "p_holm", "least_effect"):
+                ratio = (cell["times"] or {}).get(name)
+                if ratio is None:
+                    self.assertTrue(math.isnan(row[name]), name)
+                else:
+                    self.assertAlmostEqual(
+                        row[name] / ratio if ratio else row[name] + 1, 1, delta=1e-9, msg=name
+                    )
+        return mine
+
+    def changed(self, lines, change):
+        file = tempfile.NamedTemporaryFile("w", suffix=".jsonl", delete=False)
+        self.addCleanup(os.unlink, file.name)
+        with file:
+            for i, line in enumerate(lines):
+                record = json.loads(line)
+                change(i, record)
+                file.write(json.dumps(record) + "\n")
+        return file.name
+
+    def test_equals_the_program(self):
+        seeds = f"{H200}/seeds.jsonl"
+        self.expect_same(f"{seeds}@4594fb1", f"{seeds}@8c7a169")
+        lines = pathlib.Path(seeds).read_text().splitlines()[:14]
+        old = self.changed(lines, lambda i, record: None)
+
+        def slower(i, record):  # the same session: rounds are pairs
+            total = record["total_ns"]
+            total["samples"] = [int(ns * (1 + 0.004 * (j % 7))) for j, ns in enumerate(total["samples"])]
+            if i == 3:
+                record["work"]["digest"]["a"] = "0" * 16
+            if i == 4:  # too few
+                total["samples"], total["rounds"] = total["samples"][:3], total["rounds"][:3]
+            if i == 5:
+                record["session"] = "another"
+            if i == 6:
+                record["status"] = "failed"
+
+        mine = self.expect_same(old, self.changed(lines, slower))
+        self.assertLessEqual({"another_answer", "too_few", "slower"}, set(mine.cells["verdict"]))
+        self.assertEqual(len(mine.only_old), 1)
+        self.assertEqual(len(mine.left_out), 1)
+
+    def test_ties_and_large_numbers(self):
+        """Rounded times tie; more pairs than the exact count supports are approximated."""
+        lines = (H200 / "seeds.jsonl").read_text().splitlines()[:3]
+
+        def of(count, step, session):
+            def change(i, record):
+                total = record["total_ns"]
+                total["samples"] = [100000 + step * ((j * (i + 3)) % 11) for j in range(count)]
+                total["rounds"] = list(range(count))
+                record["session"] = session
+
+            return self.changed(lines, change)
+
+        for count in (8, 30, 120):
+            for session in ("one", "other"):
+                self.expect_same(of(count, 100, "one"), of(count, 130, session))
+
+    def test_nothing_in_common(self):
+        with self.assertRaisesRegex(tandem.RecordError, "have no cell in common"):
+            tandem.compare(H200 / "seeds.jsonl", H200 / "paper/records/thresholds.jsonl")
+        with self.assertRaisesRegex(tandem.RecordError, "no record of commit abc"):
+            tandem.compare(f"{H200}/seeds.jsonl@abc", H200 / "seeds.jsonl")
+        with self.assertRaisesRegex(tandem.RecordError, "no commit behind the @"):
+            tandem.compare(f"{H200}/seeds.jsonl@", H200 / "seeds.jsonl")
+
+
+class Drawing(unittest.TestCase):
+    def setUp(self):
+        records = tandem.read(H200 / "plan.jsonl")
+        cells = records.cells
+        self.all = records
+        self.plates = records.of(cells["scene"].str.startswith("plates") & (cells["set_k"] == 18))
+
+    def tearDown(self):
+        matplotlib.pyplot.close("all")
+
+    def test_all_cells_are_drawn_and_the_first_is_named(self):
+        axes = tandem.plot_cells(self.plates)
+        names = [text.get_text() for text in axes.get_yticklabels()]
+        self.assertEqual(len(names), len(self.plates.cells))
+        self.assertEqual(len(set(names)), len(names), "told apart")
+        title = " ".join(axes.get_title("left").split())
+        self.assertIn(f"{names[0]} is the fastest, the next takes", title)
+        self.assertTrue(names[0].startswith("tiled"), names)
+
+    def test_indistinguishable_cells_are_marked(self):
+        changed = []
+        for number, index in enumerate(self.plates.cells.index):
+            record = json.loads(json.dumps(self.plates.cell_of[index].record))
+            total = record["total_ns"]
+            total["samples"] = [10**6 + 10**5 * ((n + number) % 2) for n in range(len(total["rounds"]))]
+            changed.append(record)
+        with tempfile.NamedTemporaryFile("w", suffix=".jsonl") as file:
+            file.write("".join(json.dumps(record) + "\n" for record in changed))
+            file.flush()
+            records = tandem.read(file.name)
+        self.assertEqual(len(records.verdict().leaders()), len(records.cells))
+        self.assertIn("not told apart", " ".join(tandem.plot_cells(records).get_title("left").split()))
+
+    def test_wrong_cells_are_never_drawn(self):
+        cells = self.plates.cells.copy()
+        first = cells["ms"].idxmin()
+        cells["status"] = cells["status"].astype(str)
+        cells.loc[first, "status"] = "wrong"
+        records = dataclasses.replace(self.plates, cells=cells)
+        for draw in (
+            tandem.plot_cells,
+            tandem.plot_stages,
+            tandem.plot_frames,
+            lambda r: tandem.plot_sweep(r, "slabs"),
+        ):
+            with self.assertWarnsRegex(UserWarning, "1 of .* cells failed, are wrong"):
+                draw(records)
+        with warnings.catch_warnings(), self.assertRaisesRegex(ValueError, "nothing can be drawn"):
+            warnings.simplefilter("ignore")
+            tandem.plot_cells(records.of([first]))
+
+    def test_stages_and_frames_equal_the_records(self):
+        axes = tandem.plot_stages(self.plates)
+        drawn = sum(patch.get_width() for patch in axes.patches)
+        stages = self.plates.cells.filter(like="stage_").fillna(0).to_numpy().sum()
+        self.assertAlmostEqual(drawn / stages, 1, delta=0.01)
+        axes = tandem.plot_frames(self.plates, "contacts")
+        self.assertEqual(len(axes.lines), len(self.plates.cells))
+        self.assertEqual(list(axes.lines[0].get_xdata()), list(range(20, 122)))
+
+    def test_sweeps_name_the_best_value(self):
+        records = tandem.read(H200 / "paper/records/thresholds.jsonl")
+        axes = tandem.plot_sweep(records, "seed_threshold")
+        best = records.cells.loc[records.cells["ms"].idxmin(), "set_seed_threshold"]
+        self.assertIn(str(best), axes.get_title("left"))
+        self.assertEqual(sum(len(line.get_xdata()) for line in axes.lines), len(records.cells))
+
+    def test_errors_name_the_cells_that_none_beats(self):
+        records = tandem.read(SOURCE / "tests/records/accuracy.jsonl")
+        scene = records.cells["scene"].str.startswith("plates") & (records.cells["device"] == "cuda:0")
+        plates = records.of(scene & (records.cells["set_k"] == 18))
+        written = [
+            json.loads(line) for line in (SOURCE / "tests/records/accuracy.jsonl").read_text().splitlines()
+        ]
+        points = {}
+        for cell in plates.cells.index:
+            record = written[cell]
+            spread = record["error"]["truth"]["contacts"]["hausdorff"]
+            if spread is not None:
+                points[cell] = (record["total_ns"]["median"], spread["p99"])
+        named = [
+            cell
+            for cell, (ns, error) in points.items()
+            if not any(a <= ns and b <= error and (a, b) != (ns, error) for a, b in points.values())
+        ]
+        self.assertTrue(0 < len(named) < len(points) > 4, points)
+        axes = tandem.plot_errors(plates, "hausdorff", "p99")
+        places = sorted(text.xy for text in axes.texts)
+        self.assertEqual(
+            [error for _, error in sorted((points[cell][1], points[cell][1]) for cell in named)],
+            [x for x, _ in places],
+        )
+        self.assertEqual(len(axes.lines), 2 * len(points))
+        self.assertRegex(
+            " ".join(axes.get_title("left").split()),
+            "has the least error and takes [0-9.]+ times as long as the fastest|is the fastest and has the least",
+        )
+
+    def test_zero_errors_are_drawn(self):
+        errors = self.plates.cells.index[:3]
+        table = pandas.DataFrame(
+            {"cell": errors, "error": "false_share", "median": [0.0, 0.5, 0.25], "p99": None, "max": None}
+        )
+        axes = tandem.plot_errors(dataclasses.replace(self.plates, errors=table), "false_share")
+        self.assertAlmostEqual(min(line.get_xdata()[0] for line in axes.lines), 0.025)
+        with self.assertRaisesRegex(
+            ValueError, "no such error in these records; there are none: measure with --truth"
+        ):
+            tandem.plot_errors(self.plates)
+        with self.assertRaisesRegex(
+            ValueError, "volume: no such error in these records; there are false_share"
+        ):
+            tandem.plot_errors(dataclasses.replace(self.plates, errors=table), "volume")
+
+    def test_records_that_cannot_be_drawn(self):
+        with self.assertRaisesRegex(
+            ValueError, "no such setting in these records; there are .*seed_threshold"
+        ):
+            tandem.plot_sweep(self.plates, "seed_treshold")
+        with self.assertRaisesRegex(ValueError, "combinations of scene, frames and device"):
+            tandem.plot_cells(self.all)
+        with self.assertRaisesRegex(ValueError, "no such column"):
+            tandem.plot_frames(self.plates, "pairs")

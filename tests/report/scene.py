@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: MIT
+# test: cost=10
+"""The scene on a page of `tandem view` in Chromium fills its box, and leaves
+scrolling to the page."""
+
+from tests.program import tandem
+from tests.report.case import ReportCase
+
+CAMERA = "tandem.sceneView.camera.position.toArray().map(x => x.toFixed(4)).join()"
+# [left, right, bottom, top] of the pixels that differ from the background, as parts of the canvas.
+EXTENT = """(() => {
+  const c = document.getElementById('scene-canvas'), g = c.getContext('webgl2') || c.getContext('webgl');
+  tandem.sceneView.draw();
+  const pixels = new Uint8Array(4 * c.width * c.height);
+  g.readPixels(0, 0, c.width, c.height, g.RGBA, g.UNSIGNED_BYTE, pixels);
+  const words = new Uint32Array(pixels.buffer), box = [1e9, -1, 1e9, -1];
+  words.forEach((word, i) => {
+    if (word === words[0]) return;
+    const x = i % c.width, y = Math.floor(i / c.width);
+    box[0] = Math.min(box[0], x); box[1] = Math.max(box[1], x); box[2] = Math.min(box[2], y); box[3] = Math.max(box[3], y);
+  });
+  return [box[0] / c.width, (box[1] + 1) / c.width, box[2] / c.height, (box[3] + 1) / c.height];
+})()"""
+# {"r,g,b": number of pixels} without the background.
+COLOURS = """(() => {
+  const c = document.getElementById('scene-canvas'), g = c.getContext('webgl2') || c.getContext('webgl');
+  tandem.sceneView.draw();
+  const pixels = new Uint8Array(4 * c.width * c.height), found = {};
+  g.readPixels(0, 0, c.width, c.height, g.RGBA, g.UNSIGNED_BYTE, pixels);
+  for (let i = 0; i < pixels.length; i += 4) {
+    const name = pixels.slice(i, i + 3).join();
+    if (name !== pixels.slice(0, 3).join()) found[name] = (found[name] ?? 0) + 1;
+  }
+  return found;
+})()"""
+MIDDLE = "(() => { const r = document.getElementById('scene-canvas').getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; })()"
+
+
+class Scenes(ReportCase):
+    def view(self, scene, width, height):
+        page = self.work / "view.html"
+        status, _, errors = tandem("view", *scene, "-o", page)
+        self.assertEqual((status, errors), (0, []))
+        self.browser.size(width, height, mobile=width < 500)
+        self.opened(page)
+        self.browser.until("Boolean(tandem.sceneView)")
+        self.browser.run("new Promise(done => setTimeout(done, 300))")
+
+    def test_the_scene_fills_its_box(self):
+        for scene in (
+            ("plates", "--frames", "20"),
+            ("pile:bodies=60,frames=2", "--frames", "0"),
+            ("pile:bodies=300,frames=1",),
+        ):
+            for width, height in ((1400, 900), (390, 844)):
+                self.view(scene, width, height)
+                left, right, bottom, top = self.browser.run(EXTENT)
+                self.assertGreater(max(right - left, top - bottom), 0.8, (scene, width))
+                self.assertTrue(
+                    left > 0 and right < 1 and bottom > 0 and top < 1,
+                    (scene, width, left, right, bottom, top),
+                )
+
+    def pixels(self, frame):
+        """{colour: number of its pixels} of the points of contacts alone."""
+        self.browser.run(
+            f"tandem.sceneView.show({frame}); tandem.sceneView.objects.forEach(object => {{ object.visible = false; }}); "
+            "tandem.sceneView.contacts.normals.visible = false"
+        )
+        return self.browser.run(COLOURS)
+
+    def test_contacts_have_the_colours_of_their_depths(self):
+        self.view(("plates", "--frames", "20:21", "--contacts"), 1400, 900)
+        data = self.browser.run(
+            "({deepest: tandem.sceneView.data.deepest, depths: [0, 1].map(i => [...tandem.depthsOf(tandem.sceneView.data, i)])})"
+        )
+        deepest, depths = data["deepest"], data["depths"]
+        self.assertEqual(max(map(max, depths)), 65534)
+        self.assertGreater(deepest, 0)
+        frame = 0 if 65534 in depths[0] else 1
+        drawn = self.pixels(frame)
+        self.assertIn("253,231,37", drawn)  # the deepest is yellow
+        self.assertGreater(len(drawn), 10)  # others have colours between
+        self.assertNotIn("255,45,149", drawn)
+        legend = self.text("#depth-legend")
+        for part in ("depth of contacts", f"{deepest:.4g} m", f"{deepest / 2:.4g} m"):
+            self.assertIn(part, legend)
+
+    def test_contacts_without_depth_are_plain(self):
+        self.view(("plates", "--frames", "20", "--contacts"), 1400, 900)
+        self.browser.run("tandem.sceneView.data.deepest = 0")
+        drawn = self.pixels(0)  # edges of points are blended with the background
+        self.assertEqual(max(drawn, key=drawn.get), "255,45,149")
+        self.assertNotIn("253,231,37", drawn)
+        self.assertIsNone(self.browser.run("tandem.depthLegend(tandem.sceneView.data)"))
+
+    def scrolls(self):
+        self.browser.run("document.getElementById('scene-canvas').scrollIntoView({block: 'center'})")
+        return self.browser.run("scrollY"), self.browser.run(CAMERA), self.browser.run(MIDDLE)
+
+    def now(self):
+        self.browser.run("new Promise(done => setTimeout(done, 500))")
+        return self.browser.run("scrollY"), self.browser.run(CAMERA)
+
+    def test_the_wheel_scrolls_the_page(self):
+        self.view(("plates", "--frames", "20"), 1400, 500)
+        scrolled, camera, middle = self.scrolls()
+        self.browser.wheel(middle, -100)
+        now, same = self.now()
+        self.assertEqual((now < scrolled, same), (True, camera))
+        scrolled, camera, middle = self.scrolls()
+        self.browser.wheel(middle, -100, control=True)
+        now, zoomed = self.now()
+        self.assertEqual(now, scrolled)
+        self.assertNotEqual(zoomed, camera)
+
+    def test_one_finger_scrolls_and_two_turn(self):
+        self.view(("plates", "--frames", "20"), 390, 500)
+        self.browser.ask("Emulation.setTouchEmulationEnabled", enabled=True, maxTouchPoints=2)
+        self.addCleanup(self.browser.ask, "Emulation.setTouchEmulationEnabled", enabled=False)
+        scrolled, camera, (x, y) = self.scrolls()
+        self.browser.fingers([[x, y], [x, y + 60]])
+        now, same = self.now()
+        self.assertEqual((now < scrolled, same), (True, camera))
+        scrolled, camera, (x, y) = self.scrolls()
+        self.browser.fingers([[x - 40, y], [x + 10, y]], [[x + 20, y], [x + 70, y]])
+        now, turned = self.now()
+        self.assertEqual(now, scrolled)
+        self.assertNotEqual(turned, camera)

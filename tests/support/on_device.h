@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "tests/support/cells.h"
+#include "tests/support/test.h"
+
+namespace tandem::support {
+
+/// Base of suites that run on every device (TANDEM_ON_DEVICES).
+class OnDevice : public testing::TestWithParam<std::string> {
+protected:
+    Device& on = device(GetParam());
+
+    std::unique_ptr<Session> prepare(const Traversal& traversal, const Scene& scene,
+                                     const SettingTexts& given = {}) {
+        return prepare_on(on, traversal, scene, given);
+    }
+};
+
+} // namespace tandem::support
+
+#define TANDEM_ON_DEVICES(Suite)                                                                             \
+    INSTANTIATE_TEST_SUITE_P(Devices, Suite, testing::ValuesIn(tandem::support::device_names()),             \
+                             [](const auto& test) { return tandem::support::device_label(test.param); })
