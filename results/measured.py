@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Cells of committed records, for the scripts beside pages that write their tables."""
 
+import functools
 import json
 import pathlib
 import re
@@ -32,11 +33,11 @@ class Cell(cell.Cell):
     """A cell with milliseconds per frame by round: `total` of samples, and `walk`, the device time of refit and
     walk, from replays that time every command."""
 
-    @property
+    @functools.cached_property
     def total(self):
         return {number: ns / self.frames / 1e6 for number, ns in self.rounds.items()}
 
-    @property
+    @functools.cached_property
     def walk(self):
         stages = [self.record["stages"][name] for name in WALK if name in self.record["stages"]]
         walks = zip(*(stage["device_ns"]["samples"] for stage in stages))
