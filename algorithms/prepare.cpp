@@ -53,9 +53,7 @@ void check_motion_settings(const Settings& settings) {
     if (is_published(settings))
         throw InputError("setting motion=linear does not go with residency=published, whose code bounds one "
                          "frame; leave residency and preset out");
-    const bool contacting =
-        has_pairs(settings[parameters::output]) && settings[parameters::contact_rule] != ContactRule::none;
-    if (contacting && settings[parameters::decision] != DecisionPrecision::exact)
+    if (makes_contacts(settings) && settings[parameters::decision] != DecisionPrecision::exact)
         throw InputError(fmt::format("setting motion=linear finds pairs that do not meet in the frame, which "
                                      "decision={} does not leave out of contacts exactly; choose "
                                      "decision=exact or contact_rule=none",

@@ -227,6 +227,11 @@ inline bool is_published(const Settings& settings) {
     return settings.has(parameters::residency) && settings[parameters::residency] == Residency::published;
 }
 
+/// Whether a session with these settings makes contacts, in runs that do not count work.
+inline bool makes_contacts(const Settings& settings) {
+    return has_pairs(settings[parameters::output]) && settings[parameters::contact_rule] != ContactRule::none;
+}
+
 /// Whether a session walks a part of a frame's body pairs (first_body_pair, most_body_pairs).
 inline bool walks_part(const Settings& settings) {
     return settings.has(parameters::first_body_pair)

@@ -104,7 +104,7 @@ Pipeline::Pipeline(const Traversal& traversal, Device& on, const Scene& scene, S
     settings.set(parameters::pair_layout(bodies->pair_layout()));
     body_pairs = std::make_unique<BodyPairs>(BuildContext{on, scene, settings, *bodies, shape},
                                              *stages.hierarchy, writes_of(settings));
-    const bool contacting = has_pairs(output) && settings[parameters::contact_rule] != ContactRule::none;
+    const bool contacting = tandem::makes_contacts(settings);
     const auto launches =
         is_published(settings) ? ContactStage::Launches::at_once : ContactStage::Launches::apart;
     if (contacting)

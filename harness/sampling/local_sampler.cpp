@@ -42,18 +42,13 @@ void LocalSampler::begin_session() {
     state_.replay_ns = -1;
 }
 
-bool LocalSampler::makes_contacts() const {
-    return has_pairs(out_.settings[parameters::output])
-           && out_.settings[parameters::contact_rule] != ContactRule::none;
-}
-
 /// Compares pair by pair where the answer has pairs. With output=count or digest it has only sums: a wrong
 /// sum with the right count means at least one missing pair and one extra pair.
 void LocalSampler::compare(std::size_t index, const FrameResult& result, const Digest& digest,
                            const Digest& contacts) {
     auto& agreement = out_.agreement;
     ++agreement.frames;
-    const bool has_contacts = makes_contacts();
+    const bool has_contacts = makes_contacts(out_.settings);
     const auto differs = [&] {
         const auto known = expected_digests(index);
         return digest != known.pairs || (has_contacts && contacts != known.contacts);
@@ -91,7 +86,8 @@ void LocalSampler::add_dropped(std::size_t index) {
 /// Rules that need boundary faces of both tetrahedra take the depth along faces that need not be in contact.
 /// The first frame with a contact beyond its body is enough, because contacts are many.
 void LocalSampler::find_deep_contact(std::size_t index, const FrameResult& result) {
-    if (!makes_contacts() || boundaries_needed(out_.settings[parameters::contact_rule]) != 2) return;
+    if (!makes_contacts(out_.settings) || boundaries_needed(out_.settings[parameters::contact_rule]) != 2)
+        return;
     if (!decided(cell_.team, !out_.deep_contact)) return;
     const auto contacts = result.download_contacts();
     if (!is_first(cell_.team)) return;
@@ -105,7 +101,7 @@ void LocalSampler::add_errors(Truths& truths, std::size_t index, const FrameResu
     FrameAnswer answer;
     answer.pairs = digest;
     answer.contacts = contacts;
-    answer.makes_contacts = makes_contacts();
+    answer.makes_contacts = makes_contacts(out_.settings);
     answer.walked = walked_of(out_.settings);
     answer.self = out_.settings[parameters::self];
     std::vector<Pair> pairs;

@@ -23,7 +23,6 @@ private:
     void compile();
     void warm_up();
     void sample();
-    bool makes_contacts() const;
     void compare(std::size_t index, const FrameResult& result, const Digest& digest, const Digest& contacts);
     ReferenceDigests expected_digests(std::size_t index);
     void add_dropped(std::size_t index);

@@ -79,8 +79,7 @@ Cell only_cell(Request request, const std::vector<BackendReport>& backends) {
         throw InputError(fmt::format("a simulation needs one algorithm, preset, device and value of each "
                                      "setting; this asks for {} cells",
                                      cells.size()));
-    if (!has_pairs(cells.front().settings[parameters::output])
-        || cells.front().settings[parameters::contact_rule] == ContactRule::none)
+    if (!makes_contacts(cells.front().settings))
         throw InputError("a simulation needs contacts; leave out output and contact_rule");
     return cells.front();
 }
