@@ -80,54 +80,43 @@ void Session::set_threads() const {
     for (auto* device : devices()) device->set_threads(threads);
 }
 
-void Session::check_pairs(std::optional<std::span<const BodyPair>> body_pairs) const {
-    if (!body_pairs || settings()[parameters::self] != SelfPairs::off) return;
-    for (const auto& pair : *body_pairs)
-        if (pair.a == pair.b)
+void Session::check_pairs(std::optional<std::span<const BodyPair>> body_pairs, bool checked) const {
+    if (!body_pairs) return;
+    const bool has_self = settings()[parameters::self] != SelfPairs::off;
+    if (checked && has_self) return;
+    for (const auto& pair : *body_pairs) {
+        if (!checked && (pair.a > pair.b || pair.b >= scene_->bodies.size()))
+            throw InputError(fmt::format("run() got the body pair {}, {}; give a <= b below {}", pair.a,
+                                         pair.b, scene_->bodies.size()));
+        if (!has_self && pair.a == pair.b)
             throw InputError(fmt::format("run() got a pair of body {} with itself; set self=on or "
                                          "self=deformable",
                                          pair.a));
+    }
 }
 
 void Session::check_motion(bool has_next) const {
     const bool needs_next = settings()[parameters::motion] == Motion::linear;
     if (needs_next && !has_next)
-        throw InputError("setting motion=linear needs the frame's successor; call run(frame, next)");
+        throw InputError("setting motion=linear needs the frame's successor; call run({frame, next})");
     if (!needs_next && has_next)
         throw InputError("run() got a frame's successor; set motion=linear, or call run(frame)");
 }
 
 void Session::check_frames(const FrameInput& input) const {
-    check_motion(input.next != nullptr);
     const auto precision = geometry_of(settings()).precision;
     if (input.next != nullptr) check_successor(input.frame, *input.next);
     check_frame(*scene_, input.frame, precision, owned());
     if (input.next != nullptr) of_successor([&] { check_frame(*scene_, *input.next, precision, owned()); });
 }
 
-FrameResult Session::run(const FrameInput& input) {
-    check_frames(input);
-    return run_among(input, std::nullopt);
-}
-
-FrameResult Session::run(const FrameInput& input, std::span<const BodyPair> body_pairs) {
-    check_frames(input);
-    for (const auto& pair : body_pairs)
-        if (pair.a > pair.b || pair.b >= scene_->bodies.size())
-            throw InputError(fmt::format("run() got the body pair {}, {}; give a <= b below {}", pair.a,
-                                         pair.b, scene_->bodies.size()));
-    return run_among(input, body_pairs);
-}
-
-FrameResult Session::run_among(const FrameInput& input, std::optional<std::span<const BodyPair>> body_pairs) {
+FrameResult Session::run_among(const FrameView& view, std::optional<std::span<const BodyPair>> body_pairs) {
+    check_motion(view.has_next());
+    if (view.on_host() && !view.is_checked()) check_frames(*view.on_host());
+    check_pairs(body_pairs, view.is_checked());
     set_threads();
-    check_pairs(body_pairs);
-    check_motion(input.next != nullptr);
-    if (input.next == nullptr || input.frame.skipped == input.next->skipped)
-        return run_checked(input, body_pairs);
-    auto frame = input.frame;
-    frame.skipped = skipped_in_either(input.frame.skipped, input.next->skipped);
-    return run_checked({frame, input.next}, body_pairs);
+    return finished(view.on_host() ? run_on_host(*view.on_host(), body_pairs)
+                                   : run_on_device(*view.on_device(), body_pairs));
 }
 
 void Session::begin_at(const Scene& scene, std::shared_ptr<const Scene> centred) {
@@ -147,14 +136,18 @@ void Session::place(const Frame& frame) {
     do_move_origin();
 }
 
-FrameResult Session::run_checked(const FrameInput& input,
+FrameResult Session::run_on_host(const FrameInput& input,
                                  std::optional<std::span<const BodyPair>> body_pairs) {
     place(input.frame);
-    if (origin_ == Eigen::Vector3d::Zero() && !centred_) return finished(do_run(input, body_pairs));
-    const auto frame = as_on_devices(input.frame);
-    if (input.next == nullptr) return finished(do_run(frame, body_pairs));
+    const bool at_origin = origin_ == Eigen::Vector3d::Zero() && !centred_;
+    const bool skips_more = input.next != nullptr && input.frame.skipped != input.next->skipped;
+    if (at_origin && !skips_more) return do_run(input, body_pairs);
+    auto frame = at_origin ? input.frame : as_on_devices(input.frame);
+    if (input.next == nullptr) return do_run(frame, body_pairs);
+    if (skips_more) frame.skipped = skipped_in_either(input.frame.skipped, input.next->skipped);
+    if (at_origin) return do_run({frame, input.next}, body_pairs);
     const auto next = as_on_devices(*input.next);
-    return finished(do_run({frame, &next}, body_pairs));
+    return do_run({frame, &next}, body_pairs);
 }
 
 Frame Session::as_on_devices(const Frame& frame) const {
@@ -162,22 +155,17 @@ Frame Session::as_on_devices(const Frame& frame) const {
     return centred_ ? shifted(*centred_, std::move(counted)) : counted;
 }
 
-FrameResult Session::run_among(const DeviceFrameInput& input,
-                               std::optional<std::span<const BodyPair>> body_pairs) {
-    set_threads();
-    check_pairs(body_pairs);
-    check_motion(input.next != nullptr);
+FrameResult Session::run_on_device(const DeviceFrameInput& input,
+                                   std::optional<std::span<const BodyPair>> body_pairs) {
     check_fits(*scene_, input.frame);
     if (!is_placed_ && devices().size() == 1) // several devices refuse the frame
         place(downloaded(*devices().front(), *scene_, input.frame));
-    if (input.next == nullptr || input.frame.skipped == input.next->skipped) {
-        if (input.next != nullptr) check_fits(*scene_, *input.next);
-        return finished(do_run_device_input(input, body_pairs));
-    }
-    check_fits(*scene_, *input.next);
+    if (input.next != nullptr) check_fits(*scene_, *input.next);
+    if (input.next == nullptr || input.frame.skipped == input.next->skipped)
+        return do_run_device_input(input, body_pairs);
     auto frame = input.frame;
     frame.skipped = skipped_in_either(input.frame.skipped, input.next->skipped);
-    return finished(do_run_device_input({frame, input.next}, body_pairs));
+    return do_run_device_input({frame, input.next}, body_pairs);
 }
 
 /// A session inside this one has subtracted an origin of its own, if any.

@@ -9,7 +9,6 @@
 #include "backends/device.h"
 #include "scenes/scene.h"
 
-#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <span>
@@ -35,54 +34,24 @@ public:
         is_placed_ = !first_frame_places_;
         do_reset();
     }
-    /// Finds the candidate pairs of `frame` and their contacts, and waits for their numbers. The session
-    /// finds the body pairs, according to setting broad. Throws InputError for a frame that does not pass
-    /// check_frame (bodies/check_input.h), and with motion=linear, which needs the frame's successor.
-    FrameResult run(const Frame& frame) { return run(FrameInput(frame)); }
-    /// The same for these body pairs, at most 2^32 - 1. Throws InputError for a pair with a body that the
-    /// scene lacks, and for a pair of a body with itself unless setting self allows such pairs.
-    FrameResult run(const Frame& frame, std::span<const BodyPair> body_pairs) {
-        return run(FrameInput(frame), body_pairs);
-    }
-    /// The same for a list in braces.
-    FrameResult run(const Frame& frame, std::initializer_list<BodyPair> body_pairs) {
-        return run(FrameInput(frame), std::span(body_pairs.begin(), body_pairs.size()));
-    }
-    /// With motion=linear: the candidate pairs are those that could meet while the bodies move from `frame`
-    /// to `next`. Deformable vertices move on straight lines. Rigid bodies translate on straight lines and
-    /// rotate by the shorter angle at constant speed. Contacts are those of `frame`. Throws InputError if
-    /// `next` has other bodies or vertices, or with motion=none.
-    FrameResult run(const Frame& frame, const Frame& next) { return run(FrameInput(frame, &next)); }
-    /// The same for these body pairs, which must contain all that could meet on the way.
-    FrameResult run(const Frame& frame, const Frame& next, std::span<const BodyPair> body_pairs) {
-        return run(FrameInput(frame, &next), body_pairs);
-    }
-    /// One of the above, for an input with or without a successor.
-    FrameResult run(const FrameInput& input);
-    FrameResult run(const FrameInput& input, std::span<const BodyPair> body_pairs);
-    /// The same for frames and body pairs that the caller has checked, by check_frame.
-    FrameResult run_unchecked(const FrameInput& input) { return run_among(input, std::nullopt); }
-    FrameResult run_unchecked(const FrameInput& input, std::span<const BodyPair> body_pairs) {
-        return run_among(input, body_pairs);
-    }
-    /// The same for a frame in the memory of the session's only device. The answer has the bits of the same
-    /// frame in the host's memory. The device finds body pairs, independent of setting broad. Throws
-    /// InputError if a buffer is missing or too small, and as for the host's memory if coordinates do not
-    /// pass check_range or a rotation has zero length. Throws InputError also if the host needs the numbers:
-    /// with several devices, residency=published, placement=exact, or a device without double. With
-    /// origin=auto and no Scene::frame, the host downloads the first frame, once.
-    FrameResult run(const DeviceFrame& frame) { return run_among(frame, std::nullopt); }
-    /// The same for these body pairs, at most 2^32 - 1.
-    FrameResult run(const DeviceFrame& frame, std::span<const BodyPair> body_pairs) {
+    /// Finds the candidate pairs of the frame and their contacts, and waits for their numbers. The session
+    /// finds the body pairs, according to setting broad; on the device for frames in its memory.
+    /// With motion=linear, the view needs the frame's successor: the pairs are those that could meet while
+    /// the bodies move from one to the other. Deformable vertices move on straight lines. Rigid bodies
+    /// translate on straight lines and rotate by the shorter angle at constant speed. Contacts are those of
+    /// the frame. A frame in the memory of the only device gives the bits of the same frame in the host's
+    /// memory. With origin=auto and no Scene::frame, the host downloads the first one, once. Throws
+    /// InputError, unless the view is checked, for a frame that does not pass check_frame
+    /// (bodies/check_input.h), and always for a successor without motion=linear or the reverse. For frames in
+    /// a device's memory it throws InputError if a buffer is missing or too small, if coordinates do not pass
+    /// check_range or a rotation has zero length, and if the host needs the numbers: with several devices,
+    /// residency=published, placement=exact, or a device without double.
+    FrameResult run(const FrameView& frame) { return run_among(frame, std::nullopt); }
+    /// The same for these body pairs, at most 2^32 - 1; with motion=linear all that could meet on the way.
+    /// Throws InputError for a pair with a body that the scene lacks, unless the view is checked, and for a
+    /// pair of a body with itself unless setting self allows such pairs.
+    FrameResult run(const FrameView& frame, std::span<const BodyPair> body_pairs) {
         return run_among(frame, body_pairs);
-    }
-    /// With motion=linear, as for frames in the host's memory.
-    FrameResult run(const DeviceFrame& frame, const DeviceFrame& next) {
-        return run_among(DeviceFrameInput(frame, &next), std::nullopt);
-    }
-    FrameResult run(const DeviceFrameInput& input) { return run_among(input, std::nullopt); }
-    FrameResult run(const DeviceFrame& frame, const DeviceFrame& next, std::span<const BodyPair> body_pairs) {
-        return run_among(DeviceFrameInput(frame, &next), body_pairs);
     }
     /// Switches to kernels that count their work and make no contacts, or back. Such runs are never timed.
     void count_work(bool on) { do_count_work(on); }
@@ -109,12 +78,13 @@ private:
     void place(const Frame& frame);
     /// Called in every run, because sessions may share a device with other settings.
     void set_threads() const;
-    void check_pairs(std::optional<std::span<const BodyPair>> body_pairs) const;
+    void check_pairs(std::optional<std::span<const BodyPair>> body_pairs, bool checked) const;
     void check_motion(bool has_next) const;
     void check_frames(const FrameInput& input) const;
-    FrameResult run_among(const FrameInput& input, std::optional<std::span<const BodyPair>> body_pairs);
-    FrameResult run_among(const DeviceFrameInput& input, std::optional<std::span<const BodyPair>> body_pairs);
-    FrameResult run_checked(const FrameInput& input, std::optional<std::span<const BodyPair>> body_pairs);
+    FrameResult run_among(const FrameView& view, std::optional<std::span<const BodyPair>> body_pairs);
+    FrameResult run_on_host(const FrameInput& input, std::optional<std::span<const BodyPair>> body_pairs);
+    FrameResult run_on_device(const DeviceFrameInput& input,
+                              std::optional<std::span<const BodyPair>> body_pairs);
     /// The frame as the devices have it: relative to the origin, and to the middles of centred meshes.
     Frame as_on_devices(const Frame& frame) const;
     /// Completes a frame's result, checks the devices' guards, and fixes the origin.

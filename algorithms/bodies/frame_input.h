@@ -6,6 +6,7 @@
 #include "scenes/scene.h"
 
 #include <string>
+#include <variant>
 
 namespace tandem {
 
@@ -25,6 +26,37 @@ struct DeviceFrameInput {
 
     const DeviceFrame& frame;
     const DeviceFrame* next = nullptr;
+};
+
+/// What a session runs: a frame in the memory of the host, or of the session's only device, and its successor
+/// if the session has motion=linear. The frames must outlive the object.
+class FrameView {
+public:
+    FrameView(const Frame& frame) : input_(FrameInput(frame)) {} // implicit: a frame alone is a view
+    FrameView(const Frame& frame, const Frame& next) : input_(FrameInput(frame, &next)) {}
+    FrameView(const FrameInput& input) : input_(input) {}
+    FrameView(const DeviceFrame& frame) : input_(DeviceFrameInput(frame)) {}
+    FrameView(const DeviceFrame& frame, const DeviceFrame& next) : input_(DeviceFrameInput(frame, &next)) {}
+    FrameView(const DeviceFrameInput& input) : input_(input) {}
+
+    /// The same frames, which the caller has checked by check_frame (bodies/check_input.h), as the body
+    /// pairs.
+    FrameView checked() const {
+        auto view = *this;
+        view.is_checked_ = true;
+        return view;
+    }
+    bool is_checked() const { return is_checked_; }
+
+    /// The frames in the host's memory; null if they are in the device's.
+    const FrameInput* on_host() const { return std::get_if<FrameInput>(&input_); }
+    /// The frames in the device's memory; null if they are in the host's.
+    const DeviceFrameInput* on_device() const { return std::get_if<DeviceFrameInput>(&input_); }
+    bool has_next() const { return on_host() ? on_host()->next != nullptr : on_device()->next != nullptr; }
+
+private:
+    std::variant<FrameInput, DeviceFrameInput> input_;
+    bool is_checked_ = false;
 };
 
 /// The result of `work` on a frame's successor. Its InputError names the successor, because the frame itself

@@ -121,7 +121,8 @@ bool add(FrameResult& result, std::span<const std::byte> message) {
 } // namespace
 
 FrameResult JobSession::do_run(const FrameInput& input, std::optional<std::span<const BodyPair>> body_pairs) {
-    auto result = body_pairs ? own_->run_unchecked(input, *body_pairs) : own_->run_unchecked(input);
+    auto result = body_pairs ? own_->run(FrameView(input).checked(), *body_pairs)
+                             : own_->run(FrameView(input).checked());
     bool has_pairs = result.has_pairs();
     const auto all = ranks_.gather_to_all(message_of(result));
     for (std::size_t rank = 0; rank < all.size(); ++rank)

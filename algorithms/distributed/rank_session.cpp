@@ -220,15 +220,15 @@ void RankSession::exchange(const FrameInput& input, Report& own) {
 /// A frame that needs batches needs all vertices in the host's memory. The device exchange is disabled on all
 /// ranks after such a frame.
 FrameResult RankSession::run_local(Report& own) {
-    if (!device_exchange_.is_enabled()) return session_->run_unchecked(local_input());
+    if (!device_exchange_.is_enabled()) return session_->run(FrameView(local_input()).checked());
     try {
-        return session_->run_unchecked(local_input());
+        return session_->run(FrameView(local_input()).checked());
     } catch (const OutOfMemory&) {
         own.needs_batches = true;
     }
     device_exchange_.download_received(ghosts_, *session_->bodies(), *local_scene_, local_frame_);
     session_->set_received({});
-    return session_->run_unchecked(local_input());
+    return session_->run(FrameView(local_input()).checked());
 }
 
 void RankSession::run_subdomain(const FrameInput& input, FrameResult& result, Report& own) {

@@ -124,8 +124,8 @@ void SplitSession::distribute_pairs(std::span<const BodyPair> body_pairs) {
 
 FrameResult SplitSession::run_subdomain(std::size_t i, const FrameInput& input, bool has_given_pairs) {
     const auto begin = Clock::now();
-    auto result = has_given_pairs ? sessions_[i]->run_unchecked(input, pairs_by_device_[i])
-                                  : sessions_[i]->run_unchecked(input);
+    auto result = has_given_pairs ? sessions_[i]->run(FrameView(input).checked(), pairs_by_device_[i])
+                                  : sessions_[i]->run(FrameView(input).checked());
     const auto ns = std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - begin).count();
     result.shared = {
         {subdomains_[i].own.size() + subdomains_[i].ghosts.size(), result.body_pairs, result.count, ns}};

@@ -37,7 +37,7 @@ void dump(const Cell& cell, const Job& job, DumpFile& pairs, DumpFile& contacts)
     for (std::size_t i = 0; i < job.range.size(); ++i) {
         if (decided(cell.team, Interrupt::asked())) throw Interrupted();
         const auto state = job.range.state(i, session->settings()[parameters::motion]);
-        const auto result = session->run_unchecked(state.input());
+        const auto result = session->run(FrameView(state.input()).checked());
         // Collective: all ranks download; only rank 0 writes.
         if (!job.options.dump_pairs.empty())
             if (const auto found = result.download(); pairs) pairs.pairs(job.range.first() + i, found);

@@ -108,7 +108,7 @@ InstrumentedReplay Replays::instrumented() {
         const auto frame = next_frame(i);
         const ranges::ProfilerRange stretch(frame_names_[i].c_str());
         const auto begin = Clock::now();
-        const auto result = session_->run_unchecked(frame.input());
+        const auto result = session_->run(FrameView(frame.input()).checked());
         replay.frame_ns.push_back(since(begin));
         std::vector<Trace> traces;
         together(cell_.team, [&] {
@@ -140,12 +140,12 @@ InstrumentedReplay Replays::instrumented() {
 std::vector<Trace> Replays::traced(std::size_t index) {
     const ranges::ProfilerRange cell(name_.c_str());
     session_->reset();
-    for (std::size_t i = 0; i < index; ++i) session_->run_unchecked(next_frame(i).input());
+    for (std::size_t i = 0; i < index; ++i) session_->run(FrameView(next_frame(i).input()).checked());
     const auto frame = next_frame(index);
-    session_->run_unchecked(frame.input());
+    session_->run(FrameView(frame.input()).checked());
     for (auto* device : cell_.devices) device->set_clocks(Clocks::on);
     const ranges::ProfilerRange stretch(frame_names_[index].c_str());
-    const auto result = session_->run_unchecked(frame.input());
+    const auto result = session_->run(FrameView(frame.input()).checked());
     std::vector<Trace> traces;
     for (auto* device : cell_.devices) traces.push_back(device->finish());
     for (auto* device : cell_.devices) device->set_clocks(Clocks::off);
@@ -157,7 +157,7 @@ std::map<std::string_view, std::uint64_t> Replays::counted() {
     session_->reset();
     session_->count_work(true);
     for (std::size_t i = 0; i < range_.size(); ++i) {
-        const auto result = session_->run_unchecked(next_frame(i).input());
+        const auto result = session_->run(FrameView(next_frame(i).input()).checked());
         for (const auto& counter : cell_.algorithm->counters()) {
             const auto found = result.work.find(counter.name);
             if (found == result.work.end()) continue;

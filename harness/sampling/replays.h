@@ -39,7 +39,7 @@ public:
             const auto frame = next_frame(i);
             const ranges::ProfilerRange stretch(frame_names_[i].c_str());
             const auto begin = std::chrono::steady_clock::now();
-            const auto result = session_->run_unchecked(frame.input());
+            const auto result = session_->run(FrameView(frame.input()).checked());
             replay.frame_ns.push_back(since(begin));
             replay.add(result);
             visit(i, result);

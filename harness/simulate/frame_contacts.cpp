@@ -21,7 +21,7 @@ FrameContacts::FrameContacts(const std::string& device, const Scene& scene)
 
 std::vector<ContactPoint> FrameContacts::find(const Frame& frame) {
     check_coordinates(cell_, scene_, frame);
-    return session_->run_unchecked(frame).download_contacts();
+    return session_->run(FrameView(frame).checked()).download_contacts();
 }
 
 } // namespace tandem

@@ -88,13 +88,8 @@ std::size_t cuda_number(const std::string& device) {
 using BodyPairs = std::optional<std::span<const BodyPair>>;
 
 /// HostInput has checked frames of the host; the device checks those in its memory.
-FrameResult run_among(Session& session, const FrameInput& frames, const BodyPairs& pairs) {
-    return pairs ? session.run_unchecked(frames, *pairs) : session.run_unchecked(frames);
-}
-FrameResult run_among(Session& session, const DeviceFrameInput& frames, const BodyPairs& pairs) {
-    if (!pairs) return session.run(frames);
-    return frames.next == nullptr ? session.run(frames.frame, *pairs)
-                                  : session.run(frames.frame, *frames.next, *pairs);
+FrameResult run_among(Session& session, const FrameView& frames, const BodyPairs& pairs) {
+    return pairs ? session.run(frames.checked(), *pairs) : session.run(frames.checked());
 }
 
 } // namespace

@@ -78,12 +78,12 @@ TEST_P(DistantMeshes, GiveTheAnswerOfTheReferenceInMotion) {
                 given[name] = value;
             const auto session = prepare_on(on, *traversal, scene_, given);
             const auto right = right_for(*session, scene_, {frame_, &next_});
-            EXPECT_EQ(session->run(frame_, next_).download(), right.pairs);
+            EXPECT_EQ(session->run({frame_, next_}).download(), right.pairs);
             if (given.contains("placement")) continue; // the host bounds drift
             const Rows rows(frame_, false), next_rows(next_, false);
             const auto on_device = rows.uploaded_to(on), next_on_device = next_rows.uploaded_to(on);
-            EXPECT_EQ(session->run(on_device, next_on_device).download(),
-                      session->run(rows.host, next_rows.host).download());
+            EXPECT_EQ(session->run({on_device, next_on_device}).download(),
+                      session->run({rows.host, next_rows.host}).download());
         }
 }
 
@@ -141,7 +141,7 @@ TEST_P(DistantMeshes, MissNothingOnArcsAboutTheirOrigins) {
                                                 counted_from(session->origin(), arc.to),
                                                 {Precision::fp32, Placement::rounded, Origin::automatic});
                 met += truth.colliding.size();
-                const auto found = session->run(arc.from, arc.to).download();
+                const auto found = session->run({arc.from, arc.to}).download();
                 EXPECT_TRUE(std::ranges::includes(found, truth.colliding));
             }
     }

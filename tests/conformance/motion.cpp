@@ -70,7 +70,7 @@ TEST_P(MotionOf, EveryAlgorithmFindsThePairsOfTheReference) {
             for (const auto& [from, to] : {std::pair{frame_, next_}, std::pair{next_, frame_}}) {
                 const auto right = right_for_motion(*session, scene_, {from, &to});
                 const auto still = right_for_motion(*session, scene_, from);
-                const auto result = session->run(from, to);
+                const auto result = session->run({from, to});
                 EXPECT_GT(result.count, still.digest.count + 100);
                 EXPECT_EQ(result.digest(), right.digest);
                 EXPECT_EQ(result.download(), right.pairs);
@@ -88,7 +88,7 @@ TEST_P(MotionOf, WithoutMotionIsThatOfOneFrame) {
             SCOPED_TRACE(std::string(traversal->name()) + " " + rounding);
             const auto session = prepare(*traversal, scene_, moving({{"rounding", rounding}}));
             const auto still = prepare(*traversal, scene_, {{"rounding", rounding}});
-            EXPECT_EQ(session->run(frame_, frame_).digest(), still->run(frame_).digest());
+            EXPECT_EQ(session->run({frame_, frame_}).digest(), still->run(frame_).digest());
         }
 }
 
@@ -108,10 +108,10 @@ TEST_P(MotionOf, FindsABodyThatPassesThroughAnother) {
     for (const auto* traversal : walks()) {
         SCOPED_TRACE(traversal->name());
         const auto session = prepare(*traversal, two, moving());
-        EXPECT_EQ(session->run(at(-5, 0), at(-4, 0)).count, 0u);
-        EXPECT_EQ(session->run(at(-5, 0), at(5, 0)).count, 1u);
-        EXPECT_EQ(session->run(at(5, 0), at(-5, 0)).count, 1u);
-        EXPECT_EQ(session->run(at(5, 0), at(4, 0)).count, 0u);
+        EXPECT_EQ(session->run({at(-5, 0), at(-4, 0)}).count, 0u);
+        EXPECT_EQ(session->run({at(-5, 0), at(5, 0)}).count, 1u);
+        EXPECT_EQ(session->run({at(5, 0), at(-5, 0)}).count, 1u);
+        EXPECT_EQ(session->run({at(5, 0), at(4, 0)}).count, 0u);
     }
     // A long bar turns by 180 degrees: it meets the other body only on the way.
     two.meshes.push_back(one_tetrahedron(1));
@@ -124,7 +124,7 @@ TEST_P(MotionOf, FindsABodyThatPassesThroughAnother) {
         return state;
     };
     const double half = 3.141592653589793 / 2;
-    EXPECT_EQ(prepare(algorithm("tiled"), two, moving())->run(turned(half - 1.5), turned(half + 1.5)).count,
+    EXPECT_EQ(prepare(algorithm("tiled"), two, moving())->run({turned(half - 1.5), turned(half + 1.5)}).count,
               1u);
 }
 
@@ -133,7 +133,7 @@ TEST_P(MotionOf, ContactsAreThoseOfTheFrame) {
     const SettingTexts exact{{"decision", "exact"}, {"broad", "device"}};
     for (const auto* traversal : walks()) {
         SCOPED_TRACE(traversal->name());
-        const auto result = prepare(*traversal, scene_, moving(exact))->run(frame_, next_);
+        const auto result = prepare(*traversal, scene_, moving(exact))->run({frame_, next_});
         const auto right = prepare(*traversal, scene_, exact)->run(frame_);
         ASSERT_GT(right.contacts, 20u);
         EXPECT_EQ(result.contacts, right.contacts);
@@ -145,9 +145,9 @@ TEST_P(MotionOf, BatchesGiveTheSameAnswer) {
     for (const auto* traversal : walks()) {
         SCOPED_TRACE(traversal->name());
         const auto given = moving({{"broad", "device"}});
-        const auto right = prepare(*traversal, scene_, given)->run(frame_, next_);
+        const auto right = prepare(*traversal, scene_, given)->run({frame_, next_});
         const Limited limit(on, least_bytes(on, *traversal, scene_, given) + 6 * right.count);
-        const auto result = prepare(*traversal, scene_, given)->run(frame_, next_);
+        const auto result = prepare(*traversal, scene_, given)->run({frame_, next_});
         EXPECT_GT(result.batches, 1u);
         EXPECT_EQ(result.digest(), right.digest());
     }
@@ -165,8 +165,8 @@ TEST_P(MotionOf, LeavesOutWhatEitherFrameSkips) {
         SCOPED_TRACE(traversal->name());
         const auto session = prepare(*traversal, scene_, moving());
         const auto right = right_for_motion(*session, scene_, {both, &both_next});
-        EXPECT_EQ(session->run(frame_, next_).download(), right.pairs);
-        EXPECT_EQ(session->run(both, next_).download(), right.pairs);
+        EXPECT_EQ(session->run({frame_, next_}).download(), right.pairs);
+        EXPECT_EQ(session->run({both, next_}).download(), right.pairs);
     }
 }
 
@@ -178,12 +178,12 @@ TEST_P(MotionOf, FramesOnTheDeviceGiveTheSameAnswer) {
         for (const bool floats : {false, true}) {
             const Rows rows(frame_, floats), next_rows(next_, floats);
             const auto session = prepare(algorithm("tiled"), scene_, moving(given));
-            const auto right = session->run(rows.host, next_rows.host);
+            const auto right = session->run({rows.host, next_rows.host});
             const auto on_device = rows.uploaded_to(on), next_on_device = next_rows.uploaded_to(on);
             const auto other = prepare(algorithm("tiled"), scene_, moving(given));
             for (int i = 0; i < 2; ++i)
-                EXPECT_EQ(other->run(on_device, next_on_device).download(), right.download());
-            EXPECT_EQ(session->run(on_device, next_on_device, all_pairs(scene_)).digest(), right.digest());
+                EXPECT_EQ(other->run({on_device, next_on_device}).download(), right.download());
+            EXPECT_EQ(session->run({on_device, next_on_device}, all_pairs(scene_)).digest(), right.digest());
         }
 }
 
@@ -191,14 +191,18 @@ TEST_P(MotionOf, RefusesWhatDoesNotFit) {
     const auto& tiled = algorithm("tiled");
     const auto session = prepare(tiled, scene_, moving()), still = prepare(tiled, scene_, {});
     EXPECT_THAT(message_of([&] { session->run(frame_); }), HasSubstr("needs the frame's successor"));
-    EXPECT_THAT(message_of([&] { still->run(frame_, next_); }), HasSubstr("set motion=linear"));
+    EXPECT_THAT(message_of([&] { still->run({frame_, next_}); }), HasSubstr("set motion=linear"));
     auto shorter = next_;
     shorter.deformed[1].pop_back();
-    EXPECT_THAT(message_of([&] { session->run(frame_, shorter); }),
+    EXPECT_THAT(message_of([&] {
+                    session->run({frame_, shorter});
+                }),
                 HasSubstr("body 1 has 27 vertices in the frame and 26 in its successor"));
     shorter = next_;
     shorter.poses.pop_back();
-    EXPECT_THAT(message_of([&] { session->run(frame_, shorter); }),
+    EXPECT_THAT(message_of([&] {
+                    session->run({frame_, shorter});
+                }),
                 HasSubstr("9 bodies and its successor has 8"));
     EXPECT_THAT(message_of([&] {
                     prepare(tiled, scene_, {{"motion", "linear"}});
@@ -216,7 +220,7 @@ TEST_P(MotionOf, RefusesWhatDoesNotFit) {
                     prepare(algorithm("chunked"), scene_, moving({{"residency", "published"}}));
                 }),
                 HasSubstr("leave residency and preset out"));
-    EXPECT_EQ(session->run(frame_, next_).digest(),
+    EXPECT_EQ(session->run({frame_, next_}).digest(),
               right_for_motion(*session, scene_, {frame_, &next_}).digest)
         << "the session remains usable";
 }
@@ -229,8 +233,9 @@ TEST(ExactMotion, IsMissedByNoPairOnTheWay) {
          {SettingTexts{{"k", "6"}, {"placement", "exact"}}, SettingTexts{{"k", "18"}, {"placement", "exact"}},
           SettingTexts{{"k", "26"}, {"precision", "double"}}}) {
         SCOPED_TRACE(text(given));
-        const auto found =
-            prepare_on(device("host"), algorithm("tiled"), scene, moving(given))->run(frame, next).download();
+        const auto found = prepare_on(device("host"), algorithm("tiled"), scene, moving(given))
+                               ->run({frame, next})
+                               .download();
         const auto still = prepare_on(device("host"), algorithm("tiled"), scene, given);
         const auto ends =
             pair_errors(frame_truth(scene, between(frame, next, 0.5), {Precision::fp64, Placement::exact}),
@@ -256,7 +261,7 @@ TEST(SharedMotion, IsFoundByOneDeviceOrTheOther) {
             const auto session = traversal->prepare(devices, scene, resolved(*traversal, given));
             for (std::size_t i = 0; i < 3; ++i) {
                 const auto frame = scene.frame(i % 2), next = scene.frame((i + 1) % 2);
-                EXPECT_EQ(session->run(frame, next).download(),
+                EXPECT_EQ(session->run({frame, next}).download(),
                           reference(scene, {frame, &next}, geometry_of(session->settings()), false,
                                     Method::brute_force, contact_settings_of(session->settings()))
                               .pairs);

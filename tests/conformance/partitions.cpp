@@ -189,14 +189,14 @@ TEST_F(Partitions, ExpectedFramesRunOnce) {
     };
     auto unprepared = session(), prepared = session();
     const auto frame = scene.frame(0);
-    const auto result = unprepared.run_unchecked(frame);
+    const auto result = unprepared.run(FrameView(frame).checked());
     EXPECT_GT(result.retries, 0u);
     ASSERT_GT(result.contacts, 0u);
     prepared.expect(result.count, result.contacts_a_pair());
-    const auto again = prepared.run_unchecked(frame);
+    const auto again = prepared.run(FrameView(frame).checked());
     EXPECT_EQ(again.retries, 0u);
     expect_equal(again, result);
-    EXPECT_EQ(prepared.run_unchecked(frame).retries, 0u)
+    EXPECT_EQ(prepared.run(FrameView(frame).checked()).retries, 0u)
         << "while the last answer is kept, with other buffers";
     // Buffers alternate while the last answer is kept.
     auto apart = frame;
@@ -205,13 +205,13 @@ TEST_F(Partitions, ExpectedFramesRunOnce) {
         for (auto& vertex : apart.deformed[body]) vertex.x() += 100.0 * static_cast<double>(body);
     }
     auto later = session();
-    auto last = later.run_unchecked(apart);
-    last = later.run_unchecked(apart);
+    auto last = later.run(FrameView(apart).checked());
+    last = later.run(FrameView(apart).checked());
     ASSERT_EQ(last.count, 0u);
-    last = later.run_unchecked(frame);
+    last = later.run(FrameView(frame).checked());
     ASSERT_GT(last.retries, 0u);
     for (int i = 0; i < 4; ++i) {
-        last = later.run_unchecked(frame);
+        last = later.run(FrameView(frame).checked());
         EXPECT_EQ(last.retries, 0u) << "the capacities were sufficient before";
     }
 }

@@ -53,9 +53,10 @@ TEST_P(SceneLeafQueries, FindPairsOfFixedBodiesOnlyIfGiven) {
     const auto found = session->run(frame).download();
     ASSERT_FALSE(found.empty());
     for (const auto& pair : found) EXPECT_FALSE(pair.body_a == 2 && pair.body_b == 3);
-    const auto given = session->run(frame, {{2, 3}});
+    const auto given = session->run(frame, std::array{BodyPair{2, 3}});
     EXPECT_GT(given.count, 0u);
-    EXPECT_EQ(given.digest(), prepare_on(on, algorithm("chunked"), scene)->run(frame, {{2, 3}}).digest());
+    EXPECT_EQ(given.digest(),
+              prepare_on(on, algorithm("chunked"), scene)->run(frame, std::array{BodyPair{2, 3}}).digest());
     EXPECT_EQ(session->run(frame).download(), found);
 }
 

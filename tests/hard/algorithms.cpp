@@ -157,7 +157,7 @@ TEST_P(HardAlgorithms, MissNothingOnTheWay) {
                                                precision, family.self ? "on" : "off", few));
                 if (traversal->name() == "gproximity") given["queue_bytes"] = "1048576";
                 const auto found =
-                    prepare(*traversal, scene, given)->run(from, to, all_pairs(scene, self)).download();
+                    prepare(*traversal, scene, given)->run({from, to}, all_pairs(scene, self)).download();
                 EXPECT_TRUE(std::ranges::includes(found, truth.colliding));
             }
         }

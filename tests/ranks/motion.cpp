@@ -78,8 +78,11 @@ TEST_F(RankMotion, NeedsASuccessor) {
     EXPECT_THAT([&] { session->run(scene.frame(0)); },
                 testing::ThrowsMessage<InputError>(testing::HasSubstr("needs the frame's successor")));
     const auto still = tiled.prepare(own_device(), scene, settings_of(tiled), *job);
-    EXPECT_THAT([&] { still->run(scene.frame(0), scene.frame(1)); },
-                testing::ThrowsMessage<InputError>(testing::HasSubstr("set motion=linear")));
+    EXPECT_THAT(
+        [&] {
+            still->run({scene.frame(0), scene.frame(1)});
+        },
+        testing::ThrowsMessage<InputError>(testing::HasSubstr("set motion=linear")));
 }
 
 } // namespace

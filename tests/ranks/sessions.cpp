@@ -254,7 +254,7 @@ TEST_F(RankSessions, FarScenesHaveOneOrigin) {
     expect_frames_equal(away, traversal, own_device());
     const auto right = alone(traversal, near)->run(near.frame(0)).download_contacts();
     JobSession session(*job, traversal.prepare(own_device(), away, settings_of(traversal), *job));
-    const auto found = session.run_unchecked(own_frame(away, session, 0)).download_contacts();
+    const auto found = session.run(FrameView(own_frame(away, session, 0)).checked()).download_contacts();
     if (!job->is_first()) return;
     ASSERT_EQ(found.size(), right.size());
     ASSERT_GT(right.size(), 100u);

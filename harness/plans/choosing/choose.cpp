@@ -94,7 +94,7 @@ Replayed replayed(const Cell& cell, Session& session, const FrameRange& range, s
         const auto frame = range.state(i, session.settings()[parameters::motion]);
         for (auto* device : cell.devices) device->finish();
         const auto begin = std::chrono::steady_clock::now();
-        const auto result = session.run_unchecked(frame.input());
+        const auto result = session.run(FrameView(frame.input()).checked());
         sum.ns += since(begin);
         sum.contacts += result.contacts;
         sum.pairs += cell.team == nullptr ? result.count : 0;

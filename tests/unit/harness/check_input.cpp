@@ -73,18 +73,18 @@ TEST_F(CheckInput, FramesAreCheckedBeforeTheyAreRead) {
 TEST_F(CheckInput, BodyPairsAreCheckedBeforeTheyAreRead) {
     const auto frame = scene_.frame(0);
     EXPECT_THAT(message_of([&] {
-                    session_->run(frame, {{1, 4}});
+                    session_->run(frame, std::array{BodyPair{1, 4}});
                 }),
                 HasSubstr("run() got the body pair 1, 4"));
     EXPECT_THAT(message_of([&] {
-                    session_->run(frame, {{2, 1}});
+                    session_->run(frame, std::array{BodyPair{2, 1}});
                 }),
                 HasSubstr("run() got the body pair 2, 1"));
     EXPECT_THAT(message_of([&] {
-                    session_->run(frame, {{2, 2}});
+                    session_->run(frame, std::array{BodyPair{2, 2}});
                 }),
                 HasSubstr("a pair of body 2 with itself"));
-    EXPECT_GT(session_->run(frame, {{1, 2}}).count, 0u);
+    EXPECT_GT(session_->run(frame, std::array{BodyPair{1, 2}}).count, 0u);
 }
 
 TEST_F(CheckInput, SuccessorsAreCheckedToo) {
@@ -92,7 +92,9 @@ TEST_F(CheckInput, SuccessorsAreCheckedToo) {
     const auto frame = scene_.frame(0);
     auto next = scene_.frame(1);
     next.poses[2].rotation.coeffs().setZero();
-    EXPECT_THAT(message_of([&] { moving->run(frame, next); }),
+    EXPECT_THAT(message_of([&] {
+                    moving->run({frame, next});
+                }),
                 HasSubstr("successor: body 2 has a rotation of length 0;"));
 }
 
@@ -131,10 +133,10 @@ TEST_F(CheckInput, SettingsByName) {
 
 TEST_F(CheckInput, UncheckedFramesHaveTheSameAnswer) {
     const auto frame = scene_.frame(1);
-    EXPECT_EQ(session_->run_unchecked(frame).digest(), session_->run(frame).digest());
+    EXPECT_EQ(session_->run(FrameView(frame).checked()).digest(), session_->run(frame).digest());
     auto longer = frame;
     longer.poses[2].rotation.coeffs() *= 2;
-    EXPECT_EQ(message_of([&] { session_->run_unchecked(longer); }), "no error");
+    EXPECT_EQ(message_of([&] { session_->run(FrameView(longer).checked()); }), "no error");
 }
 
 } // namespace
