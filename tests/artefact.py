@@ -5,9 +5,8 @@ scripts/test --full runs them."""
 
 import os
 import re
-import subprocess
 
-from tests.program import SOURCE, tandem
+from tests.program import SOURCE, ran, tandem
 from tests.script_case import ScriptCase, called, loaded
 
 PAGE = SOURCE / "docs/artefact.md"
@@ -17,9 +16,7 @@ class Artefact(ScriptCase):
     def run_page(self, text):
         page = self.work / "page.md"
         page.write_text(text)
-        done = subprocess.run(
-            [SOURCE / "scripts/artefact", page], capture_output=True, text=True, check=False
-        )
+        done = ran([SOURCE / "scripts/artefact", page])
         return done.returncode, done.stdout, done.stderr
 
     def test_commands_run_in_order_and_are_judged(self):

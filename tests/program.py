@@ -33,6 +33,11 @@ SMALL = {
 }
 
 
+def ran(words, **options):
+    """The ended process, with its output as text."""
+    return subprocess.run([*map(str, words)], capture_output=True, text=True, **options)
+
+
 def cells_of(text):
     """The records of cells among lines of JSON, without verdicts."""
     return [record for record in map(json.loads, text.splitlines()) if record.get("kind") != "verdict"]
@@ -48,15 +53,13 @@ def write_json(path, **fields):
 
 
 def words_of(arguments):
-    """The words of a command line: the first argument and those that begin with "-" may be several words, as a
-    shell splits them."""
-    return [
-        word
-        for i, argument in enumerate(map(str, arguments))
-        for word in (
-            shlex.split(argument) if " " in argument and (i == 0 or argument[0] == "-") else [argument]
-        )
-    ]
+    """The words of a command line: the first argument and those that begin with an option may be several words,
+    as a shell splits them."""
+    words = []
+    for i, argument in enumerate(map(str, arguments)):
+        is_text = " " in argument and (i == 0 or re.match("--?[a-z]", argument))
+        words += shlex.split(argument) if is_text else [argument]
+    return words
 
 
 def tandem(*arguments, environment=None, address_space=None):
@@ -143,6 +146,7 @@ class Case(unittest.TestCase):
         cls.folder = tempfile.TemporaryDirectory()
         cls.work = pathlib.Path(cls.folder.name)
         cls.good = gmsh(cls.work / "good.msh", *bar(4, (0, 0, 0)))
+        cls.twice = f"--mesh {cls.good} --mesh {cls.good}"
         schema = json.loads((SOURCE / "results/record.schema.json").read_text())
         cls.validator = jsonschema.Draft7Validator(schema)
 

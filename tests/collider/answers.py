@@ -14,7 +14,6 @@ from tests.program import bar, gmsh, sets
 
 class Answers(ColliderCase):
     def test_equal_those_of_the_program(self):
-        texts = [" ".join(map(str, pose)) for pose in POSES]
         for device in DEVICES:
             for algorithm, settings in (
                 ("tiled", {}),
@@ -24,16 +23,7 @@ class Answers(ColliderCase):
                 with self.subTest(device=device, algorithm=algorithm):
                     settings = {**self.small(algorithm), **settings}
                     dumped = self.dumps(
-                        "--mesh",
-                        self.files[0],
-                        "--mesh",
-                        self.files[1],
-                        "--pose",
-                        texts[0],
-                        "--pose",
-                        texts[1],
-                        f"--algorithm {algorithm} --device {device}",
-                        *sets(settings),
+                        self.placed, f"--algorithm {algorithm} --device {device}", *sets(settings)
                     )
                     collider = tandem.Collider(self.meshes, algorithm, device, **settings)
                     self.assertEqual(collider.devices, [device])
@@ -160,10 +150,7 @@ class Answers(ColliderCase):
         for device in DEVICES:
             with self.subTest(device=device):
                 dumped = self.dumps(
-                    "--mesh",
-                    files[0],
-                    "--mesh",
-                    files[1],
+                    f"--mesh {files[0]} --mesh {files[1]}",
                     f"--algorithm tiled --device {device}",
                     *sets(self.small("tiled")),
                 )

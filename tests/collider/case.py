@@ -63,6 +63,8 @@ class ColliderCase(Case):
         cls.parts = [bar(4, (0, 0, 0)), bar(3, (0.5, 0.25, 0.375))]
         cls.files = [gmsh(cls.work / f"part{i}.msh", *part) for i, part in enumerate(cls.parts)]
         cls.meshes = [(numpy.array(points), numpy.array(tets)) for points, tets in cls.parts]
+        bodies = zip(cls.files, (" ".join(map(str, pose)) for pose in POSES))
+        cls.placed = " ".join(f"--mesh {file} --pose '{pose}'" for file, pose in bodies)
 
     def collider(self, meshes=None, **options):
         return tandem.Collider(

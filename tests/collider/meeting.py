@@ -28,22 +28,13 @@ def matrices(poses):
 
 class Meeting(ColliderCase):
     def test_equals_the_exact_truth(self):
-        texts = [" ".join(map(str, pose)) for pose in POSES]
         for device in DEVICES:
             for settings in ({"k": 6}, {"k": 18}, {"k": 6, "precision": "double"}):
                 with self.subTest(device=device, **settings):
                     out = self.work / "truth.jsonl"
                     out.unlink(missing_ok=True)
                     self.output(
-                        "run --mesh",
-                        self.files[0],
-                        "--mesh",
-                        self.files[1],
-                        "--pose",
-                        texts[0],
-                        "--pose",
-                        texts[1],
-                        f"--algorithm tiled --device {device} --truth pairs --repeat 1 --out {out}",
+                        f"run {self.placed} --algorithm tiled --device {device} --truth pairs --repeat 1 --out {out}",
                         *sets({**self.small("tiled"), **settings}),
                     )
                     truth = json.loads(out.read_text().splitlines()[0])["error"]["truth"]

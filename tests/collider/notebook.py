@@ -9,11 +9,10 @@ import os
 import re
 import shutil
 import socket
-import subprocess
 import sys
 
 from tests.collider.case import FOLDER
-from tests.program import PROGRAM, SOURCE, Case
+from tests.program import PROGRAM, SOURCE, Case, ran
 
 MEASURED = "measured"  # the name of times of this machine
 
@@ -45,10 +44,8 @@ class Notebook(Case):
         (root / "build").mkdir()
         (root / "build/tandem").symlink_to(PROGRAM)
         out = self.work / "out.ipynb"
-        done = subprocess.run(
+        done = ran(
             [sys.executable, root / "scripts/notebook", "--out", out],
-            capture_output=True,
-            text=True,
             env={**os.environ, "PYTHONPATH": FOLDER.name},
         )
         self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)

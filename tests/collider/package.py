@@ -14,16 +14,14 @@ import tempfile
 import time
 
 from tests.collider.case import DEVICES, FOLDER, ColliderCase, tandem
-from tests.program import LONG, SOURCE, Case
+from tests.program import LONG, SOURCE, Case, ran
 
 
 class Example(ColliderCase):
     def example(self, *arguments, code=0, script="collide.py"):
-        done = subprocess.run(
+        done = ran(
             [sys.executable, SOURCE / "scripts/examples" / script, *map(str, arguments)],
             cwd=self.work,
-            capture_output=True,
-            text=True,
             env={**os.environ, "PYTHONPATH": FOLDER.name},
         )
         self.assertEqual(done.returncode, code, done.stderr)
@@ -76,13 +74,7 @@ class Package(Case):
                 "import tandem\nfrom tandem import *\nassert read and 'Collider' not in tandem.__all__\n"
                 "for name in ('Collider', 'devices'):\n    try: getattr(tandem, name)\n    except ImportError as error: print(error)\n"
             )
-            done = subprocess.run(
-                [sys.executable, "-c", code],
-                capture_output=True,
-                text=True,
-                cwd=folder,
-                env={**os.environ, "PYTHONPATH": folder},
-            )
+            done = ran([sys.executable, "-c", code], cwd=folder, env={**os.environ, "PYTHONPATH": folder})
         self.assertEqual(done.stderr, "")
         self.assertEqual(
             [line.partition(" needs the compiled part")[0] for line in done.stdout.splitlines()],

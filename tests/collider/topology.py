@@ -52,14 +52,9 @@ class Topology(ColliderCase):
     def program(self, name, *options):
         pairs, out = self.work / "pairs.csv", self.work / "told.jsonl"
         out.unlink(missing_ok=True)
-        poses = [word for pose in POSES for word in ("--pose", " ".join(map(str, pose)))]
+        placed = " ".join(f"--mesh {self.paths[name]} --pose '{' '.join(map(str, pose))}'" for pose in POSES)
         status, text, errors = run_tandem(
-            "run --mesh",
-            self.paths[name],
-            "--mesh",
-            self.paths[name],
-            *poses,
-            f"--set self=on --device host --algorithm tiled --dump-pairs {pairs} --out {out}",
+            f"run {placed} --set self=on --device host --algorithm tiled --dump-pairs {pairs} --out {out}",
             *options,
         )
         self.assertEqual(status, 0, text)

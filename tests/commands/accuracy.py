@@ -5,10 +5,9 @@
 import csv
 import json
 import shutil
-import subprocess
 import xml.etree.ElementTree
 
-from tests.program import LONG, PROGRAM, Case, bar, gmsh, tandem
+from tests.program import LONG, PROGRAM, Case, bar, gmsh, ran, tandem
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -244,11 +243,7 @@ class Accuracy(Case):
     def test_figures_draw_records(self):
         path = self.recorded("figures")
         records, folder = self.records(path), self.work / "figures"
-        done = subprocess.run(
-            ["/usr/bin/python3", PROGRAM.parent / "libexec/tandem/figures", path, folder],
-            capture_output=True,
-            text=True,
-        )
+        done = ran(["/usr/bin/python3", PROGRAM.parent / "libexec/tandem/figures", path, folder])
         self.assertEqual(done.returncode, 0, done.stderr)
         for name in ("pareto", "bars"):
             drawing = xml.etree.ElementTree.parse(folder / f"{name}.svg")
@@ -264,11 +259,7 @@ class Accuracy(Case):
             )
         empty = self.work / "no.jsonl"
         empty.write_text("")
-        done = subprocess.run(
-            ["/usr/bin/python3", PROGRAM.parent / "libexec/tandem/figures", empty, folder],
-            capture_output=True,
-            text=True,
-        )
+        done = ran(["/usr/bin/python3", PROGRAM.parent / "libexec/tandem/figures", empty, folder])
         self.assertEqual(
             (done.returncode, done.stderr), (2, f"tandem: {empty}: is empty; name a file of records\n")
         )

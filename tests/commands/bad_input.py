@@ -5,9 +5,8 @@ names the error and what to do."""
 
 import json
 import re
-import subprocess
 
-from tests.program import PROGRAM, Case, bar, gmsh, tandem, words_of
+from tests.program import PROGRAM, Case, bar, gmsh, ran, tandem, words_of
 
 
 class BadInput(Case):
@@ -112,10 +111,7 @@ class BadInput(Case):
         records stay."""
         for device in ("host", "opencl:0"):
             out = self.work / f"memory{device}.jsonl"
-            cell = (
-                f"run --mesh {self.good} --mesh {self.good} --algorithm gproximity --device {device} "
-                f"--repeat 1 --out {out}"
-            )
+            cell = f"run {self.twice} --algorithm gproximity --device {device} --repeat 1 --out {out}"
             arguments = (cell, "--set groups=64")
             self.assertEqual(tandem(*arguments)[0], 0)
             self.bad(
@@ -164,11 +160,7 @@ class Regressions(Case):
     """Regression tests of fixed errors."""
 
     def cell(self, *arguments, **options):
-        return tandem(
-            f"run --mesh {self.good} --mesh {self.good} --device host --algorithm chunked",
-            *arguments,
-            **options,
-        )
+        return tandem(f"run {self.twice} --device host --algorithm chunked", *arguments, **options)
 
     def test_check_takes_one_algorithm(self):
         for name in ("chunked", "gproximity"):
@@ -201,7 +193,7 @@ class Regressions(Case):
 
     def test_dump_after_a_failed_cell_keeps_the_table(self):
         status, text, errors = tandem(
-            f"run --mesh {self.good} --mesh {self.good} --algorithm gproximity --device host --repeat 1 "
+            f"run {self.twice} --algorithm gproximity --device host --repeat 1 "
             f"--set queue_bytes=1099511627776,67108864 --dump-pairs {self.work}/failed.csv"
         )
         self.assertEqual((status, len(errors), text.count(": right: ")), (3, 1, 1))
@@ -216,14 +208,12 @@ class Regressions(Case):
         contacts.write_text("mine\n")
         (self.work / "link.csv").symlink_to(contacts)
         failing = (
-            f"run --mesh {self.good} --mesh {self.good} --algorithm gproximity --device host --repeat 1 "
+            f"run {self.twice} --algorithm gproximity --device host --repeat 1 "
             "--set queue_bytes=1099511627776 --dump-pairs",
         )
         self.bad("queues", *failing, pairs, "--dump-contacts", self.work / "link.csv", code=3)
         self.assertEqual((list(self.work.glob("pairs.csv*")), contacts.read_text()), ([], "mine\n"))
-        piped = subprocess.run(
-            [str(PROGRAM), *words_of(failing), "/dev/stderr"], capture_output=True, text=True
-        )
+        piped = ran([PROGRAM, *words_of(failing), "/dev/stderr"])
         self.assertNotIn("body_a", piped.stderr)
         self.assertEqual(
             self.cell(
@@ -245,7 +235,7 @@ class Regressions(Case):
 
     def test_a_failure_is_one_line_without_an_empty_one(self):
         words = f"run --mesh {self.good} --algorithm gproximity --device host --set queue_bytes=1099511627776"
-        done = subprocess.run([PROGRAM, *words.split()], capture_output=True, text=True)
+        done = ran([PROGRAM, *words.split()])
         self.assertTrue(done.stderr.startswith("tandem: "), done.stderr)
 
     def test_records_can_be_written_to_a_pipe(self):

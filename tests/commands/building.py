@@ -23,7 +23,7 @@ def started_with(words, environment):
 class Building(Case):
     def setUp(self):
         cell = (
-            f"run --mesh {self.good} --mesh {self.good} --device opencl:0 --algorithm tiled --repeat 1 --quiet "
+            f"run {self.twice} --device opencl:0 --algorithm tiled --repeat 1 --quiet "
             "--set contact_rule=sat --set decision=recheck --set group_size=33"
         )
         self.words = [str(PROGRAM), *cell.split()]

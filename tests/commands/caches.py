@@ -5,9 +5,8 @@ line, go on without it, and give the same answer. Without PoCL's, cells fail and
 
 import os
 import resource
-import subprocess
 
-from tests.program import PROGRAM, Case, tandem, words_of
+from tests.program import PROGRAM, Case, ran, tandem, words_of
 
 NONE = {"TANDEM_KERNEL_CACHE": "", "XDG_CACHE_HOME": "", "HOME": ""}
 
@@ -22,9 +21,7 @@ class Caches(Case):
             str(self.file): "Not a directory",
             "/sys/kernel": "Permission denied|Read-only file system|Operation not permitted",
         }
-        self.run_words = (
-            f"run --mesh {self.good} --mesh {self.good} --device host --algorithm tiled --quiet",
-        )
+        self.run_words = (f"run {self.twice} --device host --algorithm tiled --quiet",)
 
     def right(self, *words, environment, status=0):
         """Runs a command that must succeed, and returns what it says on standard error."""
@@ -63,11 +60,8 @@ class Caches(Case):
         """No file can grow: the system refuses every byte, as on a full disk."""
         folder = self.work / "full"
         for words in (self.run_words, (*self.run_words, "--algorithm", "auto")):
-            done = subprocess.run(
+            done = ran(
                 [PROGRAM, *words_of(words), "--repeat", "1"],
-                capture_output=True,
-                text=True,
-                check=False,
                 restore_signals=False,
                 env={**os.environ, **NONE, "TANDEM_KERNEL_CACHE": str(folder)},
                 preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0)),
@@ -82,14 +76,14 @@ class Caches(Case):
 
     def test_every_command_says_it_once(self):
         environment = {"TANDEM_KERNEL_CACHE": "/dev/null/below"}
-        two = ("--mesh", self.good, "--mesh", self.good)
+        two = self.twice
         for words in (
             (*self.run_words, "--isolate"),
             (*self.run_words, "--set", "k=8,18"),
-            ("profile", *two, "--device", "host", "--quiet"),
-            ("accuracy", *two, "--device", "host", "--algorithm", "tiled", "--set", "k=8", "--quiet"),
+            ("profile", two, "--device", "host", "--quiet"),
+            ("accuracy", two, "--device", "host", "--algorithm", "tiled", "--set", "k=8", "--quiet"),
             ("devices",),
-            ("check", *two, "--device", "host", "--algorithm", "tiled", "--set", "k=8", "--quiet"),
+            ("check", two, "--device", "host", "--algorithm", "tiled", "--set", "k=8", "--quiet"),
         ):
             with self.subTest(words[0]):
                 errors = self.right(*words, environment=environment)
@@ -119,7 +113,7 @@ class Caches(Case):
 
     def test_the_cache_of_pocl(self):
         """PoCL compiles nothing without it; it has no device if it cannot make the folder."""
-        words = (f"run --mesh {self.good} --mesh {self.good} --device opencl:0 --algorithm tiled --quiet",)
+        words = (f"run {self.twice} --device opencl:0 --algorithm tiled --quiet",)
         for folder in (str(self.file), "/sys/kernel"):
             self.bad(
                 f"its kernel cache {folder} cannot be written (",

@@ -216,9 +216,7 @@ class CommandLine(Case):
             ("--algorithm", "chunked,auto", "--choose-afresh", "--choose-seconds", 1),
             ("--set", "threads=1,2"),
         ):
-            self.output(
-                "run", "--mesh", self.good, "--mesh", self.good, "--device", "host", *arguments, "--dry-run"
-            )
+            self.output("run", self.twice, "--device", "host", *arguments, "--dry-run")
 
     def test_descriptions_of_algorithms(self):
         algorithms = json.loads(tandem("algorithms", "--json")[1])

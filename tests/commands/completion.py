@@ -9,7 +9,7 @@ import subprocess
 import time
 import unittest
 
-from tests.program import PROGRAM, SOURCE, Case, tandem
+from tests.program import PROGRAM, SOURCE, Case, ran, tandem
 
 BASH = SOURCE / "scripts/completion/tandem.bash"
 ZSH = SOURCE / "scripts/completion/_tandem"
@@ -48,9 +48,7 @@ class Completion(Case):
             words.append(word)
         words[0] = str(PROGRAM)
         line = str(PROGRAM) + line[len("tandem") :]
-        done = subprocess.run(
-            ["bash", "--norc", "-c", script, "bash", breaks, line, *words], capture_output=True, text=True
-        )
+        done = ran(["bash", "--norc", "-c", script, "bash", breaks, line, *words])
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         return done.stdout.split()
 
@@ -190,10 +188,5 @@ class Completion(Case):
             (["run", "--out", ""], ["FILES"]),
             ([""], COMMANDS),
         ):
-            done = subprocess.run(
-                ["zsh", "-f", "-c", script, "zsh", PROGRAM, *words],
-                capture_output=True,
-                text=True,
-                env={**os.environ, "LC_ALL": "C"},
-            )
+            done = ran(["zsh", "-f", "-c", script, "zsh", PROGRAM, *words], env={**os.environ, "LC_ALL": "C"})
             self.assertEqual((sorted(done.stdout.split()), done.stderr), (sorted(offered), ""))

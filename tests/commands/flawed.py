@@ -41,8 +41,7 @@ class Flawed(Case):
         self.assertEqual(inputs["skip"], {**inputs["flat"], "handling": "skip"})
         self.assertEqual(keys["skip"], keys["flat"].replace("|0:0|", "|0:0,degenerate=skip|"))
         self.output(
-            f"run --mesh {self.good} --mesh {self.good} --degenerate skip --device host --repeat 1 "
-            f"--out {self.work}/unflawed.jsonl"
+            f"run {self.twice} --degenerate skip --device host --repeat 1 --out {self.work}/unflawed.jsonl"
         )
         record = self.records(self.work / "unflawed.jsonl")[0]
         self.assertNotIn("degenerate", record["key"])

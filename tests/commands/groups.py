@@ -6,9 +6,8 @@ runs work-items one after another."""
 
 import json
 import re
-import subprocess
 
-from tests.program import LONG, SOURCE, Case, tandem
+from tests.program import LONG, SOURCE, Case, ran, tandem
 
 IN_STEP = re.compile(r"__syncwarp|__shfl\w*|__ballot\w*|__activemask|asm\b|sub_group_\w+|bar\.warp\w*")
 SCENE = "pile:bodies=2,mesh=grain1,density=1,frames=1"
@@ -17,19 +16,11 @@ SCENE = "pile:bodies=2,mesh=grain1,density=1,frames=1"
 class Groups(Case):
     def expanded(self, kernel, *defines):
         """The text of a kernel file with its headers that a compiler with these defines gets."""
-        flat = subprocess.run(
+        flat = ran(
             ["/usr/bin/python3", SOURCE / "cmake/embed_kernels.py", "--root", SOURCE, "--flatten", kernel],
-            capture_output=True,
-            text=True,
             check=True,
         )
-        done = subprocess.run(
-            ["g++", "-E", "-P", "-x", "c", "-DGROUP_SIZE=64", *defines, "-"],
-            input=flat.stdout,
-            capture_output=True,
-            text=True,
-            check=False,
-        )
+        done = ran(["g++", "-E", "-P", "-x", "c", "-DGROUP_SIZE=64", *defines, "-"], input=flat.stdout)
         self.assertEqual(done.returncode, 0, done.stderr)
         return done.stdout
 

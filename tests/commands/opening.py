@@ -5,11 +5,10 @@ loads them: TRAP replaces an OpenCL driver, CUDA's and NVML. STUBS has a working
 
 import os
 import pathlib
-import subprocess
 import tempfile
 import unittest
 
-from tests.program import BUILT, PROGRAM, STUBS
+from tests.program import BUILT, PROGRAM, STUBS, ran
 
 TRAP = BUILT / "libtrap.so"
 SCENE = "pile:bodies=2,frames=1"
@@ -39,9 +38,7 @@ class Opening(unittest.TestCase):
             )
         if opencl:
             environment["OCL_ICD_VENDORS"] = f"{self.work}/icd/"
-        done = subprocess.run(
-            [str(PROGRAM), *map(str, arguments)], capture_output=True, text=True, env=environment
-        )
+        done = ran([PROGRAM, *arguments], env=environment)
         return done.returncode, done.stdout, done.stderr
 
     def test_the_traps_work(self):

@@ -8,10 +8,9 @@ import importlib.util
 import json
 import os
 import pathlib
-import subprocess
 import sys
 
-from tests.program import PROGRAM, SOURCE, Case, cells_of, sets, tandem
+from tests.program import PROGRAM, SOURCE, Case, cells_of, ran, sets, tandem
 from tests.validate_records import problems_in
 
 SCRIPT = SOURCE / "scripts/gpu/profile"
@@ -42,7 +41,7 @@ class Profile(Case):
         # The ceilings of another machine with this one's devices, because measuring takes long.
         cls.known, recorded = cls.work / "known-ceilings.jsonl", cls.work / "devices.jsonl"
         status, text, errors = tandem(
-            f"run --mesh {cls.good} --mesh {cls.good} --algorithm tiled --device host,opencl:0 --repeat 1 "
+            f"run {cls.twice} --algorithm tiled --device host,opencl:0 --repeat 1 "
             f"--truth none --no-check --out {recorded}"
         )
         assert (status, errors) == (0, []), (text, errors)
@@ -322,8 +321,8 @@ class Profile(Case):
 
     def script_on_host(self, out, *options, more=(), env=None):
         cell = self.cell("--device", "host", "--ceilings", self.known, "--out", out, *more)
-        words = map(str, [SCRIPT, "--program", PROGRAM, *options, *cell])
-        return subprocess.run([*words], capture_output=True, text=True, env=env)
+        words = [SCRIPT, "--program", PROGRAM, *options, *cell]
+        return ran(words, env=env)
 
     def counted(self, ncu, *more):
         """Runs scripts/gpu/profile with this replacement of ncu: exit code, output, record."""

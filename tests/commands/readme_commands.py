@@ -12,7 +12,7 @@ import shlex
 import shutil
 import subprocess
 
-from tests.program import LONG, SOURCE, Case, tandem
+from tests.program import LONG, SOURCE, Case, ran, tandem
 
 MIRROR = "http://deb.debian.org/debian"
 
@@ -45,9 +45,7 @@ class Commands(Case):
     def test_shells_read_all(self):
         for command in self.commands:
             with self.subTest(command):
-                done = subprocess.run(
-                    ["bash", "-n", "-c", command], capture_output=True, text=True, check=False
-                )
+                done = ran(["bash", "-n", "-c", command])
                 self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def test_scripts_have_these_options(self):
@@ -143,11 +141,6 @@ if LONG:
                         f"mount --rbind /{name} {shlex.quote(str(root))}/{name}"
                         for name in ("proc", "dev", "sys")
                     )
-                    done = subprocess.run(
-                        ["unshare", "-m", "bash", "-c", f"{mounts} && exec {shlex.join(inside)}"],
-                        capture_output=True,
-                        text=True,
-                        check=False,
-                    )
+                    done = ran(["unshare", "-m", "bash", "-c", f"{mounts} && exec {shlex.join(inside)}"])
                     self.assertEqual(done.returncode, 0, f"{done.stdout}\n{done.stderr}")
                     print(done.stdout[-1500:])

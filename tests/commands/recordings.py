@@ -233,9 +233,7 @@ class Recordings(Case):
 
     def test_export_of_meshes(self):
         folder = self.work / "meshes"
-        self.output(
-            "export", "--mesh", self.good, "--mesh", self.good, "--pose", "1 0 0 1 0 0 0", "--vtu", folder
-        )
+        self.output("export", self.twice, "--pose", "1 0 0 1 0 0 0", "--vtu", folder)
         self.assertEqual(sorted(os.listdir(folder)), ["bodies.pvd", "bodies_000000.vtu"])
 
     def test_export_of_every_third(self):

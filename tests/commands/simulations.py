@@ -12,7 +12,7 @@ import subprocess
 import time
 
 
-from tests.program import LONG, PROGRAM, SOURCE, Case, tandem
+from tests.program import LONG, PROGRAM, SOURCE, Case, ran, tandem
 from tests.validate_records import problems_of_record
 
 ARCH = "arch:segments=2"
@@ -299,9 +299,7 @@ class Simulations(SimulationCase):
         self.assertEqual(text.splitlines()[-3:], paths)
         glb = self.work / "pictured.glb"
         self.assertEqual(tandem("export", frames, "--frames", "0:39", "--glb", glb)[0], 0)
-        drawn = subprocess.run(
-            [SOURCE / "scripts/render", glb, self.work / "drawn"], capture_output=True, text=True
-        )
+        drawn = ran([SOURCE / "scripts/render", glb, self.work / "drawn"])
         self.assertEqual((drawn.returncode, drawn.stderr), (0, ""))
         pictures = [open(path, "rb").read() for path in paths]
         for which in (0, 2):  # between two keys a viewer may be half a step off

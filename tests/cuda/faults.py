@@ -11,7 +11,7 @@ import subprocess
 import tempfile
 import unittest
 
-from tests.program import BUILT, PROGRAM, STUBS as FOLDER
+from tests.program import BUILT, PROGRAM, STUBS as FOLDER, ran
 
 NVML, CUPTI = BUILT / "libstub_nvml.so", BUILT / "libstub_cupti.so"
 RUN = ("run", "pile:bodies=4,frames=1", "--repeat", "1", "--algorithm", "chunked")
@@ -29,9 +29,7 @@ def tandem(*arguments, driver="driver", nvrtc=FOLDER / "nvrtc/libnvrtc.so", **va
             environment[name] = "/nonexistent"
     if nvrtc:
         environment["TANDEM_NVRTC"] = str(nvrtc)
-    done = subprocess.run(
-        [str(PROGRAM), *arguments], stdin=subprocess.DEVNULL, capture_output=True, text=True, env=environment
-    )
+    done = ran([PROGRAM, *arguments], stdin=subprocess.DEVNULL, env=environment)
     return done.returncode, done.stdout, done.stderr.splitlines()
 
 

@@ -63,11 +63,7 @@ class Sweep(Case):
         cls.counts, cls.went_on, cls.clear = collections.Counter(), collections.Counter(), set()
         cls.old = cls.work / "old.jsonl"
         assert (
-            tandem(
-                f"run --mesh {cls.good} --mesh {cls.good} --device host --set k=8 --repeat 1 --truth none "
-                f"--out {cls.old}"
-            )[0]
-            == 0
+            tandem(f"run {cls.twice} --device host --set k=8 --repeat 1 --truth none --out {cls.old}")[0] == 0
         )
 
     @classmethod

@@ -162,7 +162,7 @@ class Power(Case):
 
     def words(self, command, folder):
         cells = (
-            f"--mesh {self.good} --mesh {self.good} --device host --algorithm chunked,tiled --set k=6",
+            f"{self.twice} --device host --algorithm chunked,tiled --set k=6",
             *CAPACITIES,
             "--repeat 2 --truth none --quiet",
         )

@@ -14,7 +14,7 @@ import shutil
 import subprocess
 
 from tests import pace
-from tests.program import BUILT, LONG, PROGRAM, Case, sets, tandem, tried, words_of, write_json
+from tests.program import BUILT, LONG, PROGRAM, Case, ran, sets, tandem, tried, words_of, write_json
 
 PRELOAD = str(BUILT / "libtandem_faults.so")
 CALLS = {family: family for family in ("open", "write", "fsync", "rename")}
@@ -42,9 +42,7 @@ def functions(stack):
     ]
     if not places:
         return []
-    names = subprocess.run(
-        ["addr2line", "-Cfe", str(PROGRAM), *places], capture_output=True, text=True
-    ).stdout.splitlines()[::2]
+    names = ran(["addr2line", "-Cfe", str(PROGRAM), *places]).stdout.splitlines()[::2]
     return [re.sub(r"nlohmann::json_abi\w+::|std::__cxx11::|\[abi:\w+\]", "", name)[:90] for name in names]
 
 
@@ -58,11 +56,7 @@ class Sweep(Case):
         super().setUpClass()
         cls.old = cls.work / "old.jsonl"
         assert (
-            tandem(
-                f"run --mesh {cls.good} --mesh {cls.good} --device host --set k=8 --repeat 1 --truth none "
-                f"--out {cls.old}"
-            )[0]
-            == 0
+            tandem(f"run {cls.twice} --device host --set k=8 --repeat 1 --truth none --out {cls.old}")[0] == 0
         )
         cls.plan = cls.work / "cells.json"
         write_json(
@@ -92,7 +86,7 @@ class Sweep(Case):
         """By name of the command: words, and the file of records that it appends to, or None. Everything is written
         to the folder."""
         out = folder / "old.jsonl"
-        cell = f"--mesh {self.good} --mesh {self.good} --device host --set k=8"
+        cell = f"{self.twice} --device host --set k=8"
         tiled = ["--algorithm tiled", *sets(FEW)]
         few_seeds = sets({name: 4096 for name in ("pair_capacity", "contact_capacity", "seed_capacity")})
         contacts = "--set contact_rule=sat --set decision=fp32 --set precision=float --set rounding=safe"

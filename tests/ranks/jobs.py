@@ -6,9 +6,8 @@ commands under it."""
 import json
 import os
 import re
-import subprocess
 
-from tests.program import PROGRAM, SMALL, Case, tandem, words_of
+from tests.program import PROGRAM, SMALL, Case, ran, tandem, words_of
 
 SCENES = ["plates:count=2", "pile:bodies=2,frames=3"]
 CAPACITIES = {
@@ -67,7 +66,7 @@ def own_lines(text):
 def launch(words):
     """A job that ends by itself; mpirun does not wait for other ranks when an exit code is not 0."""
     environment = {**ENVIRONMENT, "OMPI_MCA_odls_base_sigkill_timeout": "0"}
-    done = subprocess.run(words, capture_output=True, text=True, env=environment)
+    done = ran(words, env=environment)
     return done.returncode, done.stdout, own_lines(done.stderr)
 
 
@@ -78,12 +77,6 @@ class RanksCase(Case):
             json.dumps({name: value for name, value in {**PLAN, **fields}.items() if value is not None})
         )
         return path
-
-    def by_key(self, path):
-        records = self.records(path)
-        keys = {record["key"]: record for record in records}
-        self.assertEqual(len(keys), len(records))
-        return keys
 
 
 class Plans(RanksCase):

@@ -10,7 +10,7 @@ import signal
 import subprocess
 import time
 
-from tests.program import BUILT, LONG, PROGRAM, SMALL, STUBS, Case, sets, tandem
+from tests.program import BUILT, LONG, PROGRAM, SMALL, STUBS, Case, ran, sets, tandem
 from tests.ranks.jobs import ENVIRONMENT, job, launch, of, own_lines
 
 PILE = "pile:bodies=27,mesh=grain1,frames=2"
@@ -197,12 +197,7 @@ class RankScenes(Case):
                 out = self.work / f"auto{ranks}.jsonl"
                 skew = [f"LD_PRELOAD={SKEWED_CLOCKS}", f"SKEW_SEED={ranks}"]
                 words = ["env", f"XDG_CACHE_HOME={self.work / 'choices'}", *skew]
-                done = subprocess.run(
-                    job(*([words] * ranks))(*cell, "--out", out),
-                    capture_output=True,
-                    text=True,
-                    env=ENVIRONMENT,
-                )
+                done = ran(job(*([words] * ranks))(*cell, "--out", out), env=ENVIRONMENT)
                 choices = [line for line in done.stderr.splitlines() if line.startswith("auto: ")]
                 self.assertEqual(
                     (done.returncode, own_lines(done.stderr), len(choices)), (0, [], 1), done.stderr

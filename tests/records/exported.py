@@ -39,8 +39,7 @@ class Exported(Case):
     def test_records_become_a_table(self):
         out, table = self.work / "table.jsonl", self.work / "table.csv"
         status, text, errors = tandem(
-            f"run --mesh {self.good} --mesh {self.good} --algorithm tiled,chunked --device host "
-            f"--set k=8,18 --repeat 3 --out {out}"
+            f"run {self.twice} --algorithm tiled,chunked --device host --set k=8,18 --repeat 3 --out {out}"
         )
         self.assertEqual(status, 0, (text, errors))
         records = cells_of(out.read_text())
@@ -74,7 +73,7 @@ class Exported(Case):
     def test_records_of_a_removed_algorithm_are_read(self):
         """Its name, settings, counters and kernels are words that the program no longer has."""
         out, former = self.work / "tiled.jsonl", self.work / "former.jsonl"
-        run = (f"run --mesh {self.good} --mesh {self.good} --algorithm tiled --device host --repeat 2 --out",)
+        run = (f"run {self.twice} --algorithm tiled --device host --repeat 2 --out",)
         self.assertEqual(tandem(*run, out)[0], 0)
         (record,) = cells_of(out.read_text())
         record["key"] = record["key"].replace("tiled", "former") + ",pad=60"

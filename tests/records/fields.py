@@ -4,10 +4,9 @@
 beside it."""
 
 import json
-import subprocess
 import sys
 
-from tests.program import SOURCE, Case, tandem
+from tests.program import SOURCE, Case, ran, tandem
 
 
 def paths(value, path=()):
@@ -142,9 +141,7 @@ class Fields(Case):
         script = SOURCE / "tests/validate_records.py"
 
         def validate(*files):
-            done = subprocess.run(
-                [sys.executable, str(script), *map(str, files)], capture_output=True, text=True
-            )
+            done = ran([sys.executable, str(script), *map(str, files)])
             return done.returncode, done.stdout + done.stderr
 
         good, bad, empty = (self.work / name for name in ("good.jsonl", "bad.jsonl", "empty.jsonl"))

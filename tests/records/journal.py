@@ -29,7 +29,7 @@ def run(*arguments, before=None, **streams):
 
 class Journal(Case):
     def meshes(self):
-        return f"--mesh {self.good} --mesh {self.good} --device host --algorithm chunked"
+        return f"{self.twice} --device host --algorithm chunked"
 
     def cell(self, *more):
         return (f"{self.meshes()} --truth none --quiet", *more)

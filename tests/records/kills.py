@@ -54,7 +54,7 @@ class Kills(Case):
 
     def words(self, command, folder):
         cells = (
-            f"--mesh {self.good} --mesh {self.good} --device host --algorithm chunked,tiled",
+            f"{self.twice} --device host --algorithm chunked,tiled",
             *sets({"k": "6,8", **CAPACITIES}),
             "--repeat 2 --truth none",
         )

@@ -96,7 +96,7 @@ class Records(Case):
         queue array) separately, within its stage."""
         out = self.work / "host-work.jsonl"
         self.output(
-            f"run --mesh {self.good} --mesh {self.good} --device host --preset published --set k=8 "
+            f"run {self.twice} --device host --preset published --set k=8 "
             f"--repeat 2 --set queue_bytes=4096 --truth none --out {out}"
         )
         for record, name, times in zip(
@@ -116,8 +116,7 @@ class Records(Case):
     def test_samples_until_the_stopping_criterion(self):
         out = self.work / "suffice.jsonl"
         arguments = (
-            f"run --mesh {self.good} --mesh {self.good} --device host --algorithm chunked,tiled --set k=6 "
-            f"--truth none --out {out}",
+            f"run {self.twice} --device host --algorithm chunked,tiled --set k=6 --truth none --out {out}",
         )
         self.assertEqual(tandem(*arguments, "--seconds", 0.01, "--noise", "0.01%", "--seed", 7)[0], 0)
         self.assertEqual(tandem(*arguments, "--seconds", 60, "--noise", 0.9, "--seed", 7)[0], 0)
@@ -202,8 +201,7 @@ class Records(Case):
         ):
             out = self.work / f"origin-{name}.jsonl"
             status, text, errors = tandem(
-                f"run --mesh {self.good} --mesh {self.good} --device host --algorithm chunked --repeat 1 "
-                "--quiet",
+                f"run {self.twice} --device host --algorithm chunked --repeat 1 --quiet",
                 *words,
                 f"--out {out}",
             )
@@ -240,7 +238,7 @@ class Records(Case):
             self.skipTest("the device has room for 4,294,967,295 pairs")
         self.bad(
             "34359738360",
-            f"run --mesh {self.good} --mesh {self.good} --algorithm chunked --device opencl:0 "
+            f"run {self.twice} --algorithm chunked --device opencl:0 "
             f"--set pair_capacity=64,4294967295,128 --repeat 1 --out {out}",
             code=3,
         )

@@ -154,7 +154,7 @@ class Running(Case):
         for number in (signal.SIGINT, signal.SIGTERM):
             out = self.work / f"interrupted{number}.jsonl"
             words = [
-                f"run --mesh {self.good} --mesh {self.good} --device host --algorithm chunked,tiled "
+                f"run {self.twice} --device host --algorithm chunked,tiled "
                 f"--truth none --no-count --noise 0.0001% --seconds 100000 --out {out}"
             ]
             process = subprocess.Popen(
@@ -184,8 +184,7 @@ class Running(Case):
 
     def test_doubts_about_a_time_are_reported(self):
         status, text, _ = tandem(
-            f"run --mesh {self.good} --mesh {self.good} --device host --algorithm tiled --truth none "
-            "--noise 0.0001% --seconds 0.01"
+            f"run {self.twice} --device host --algorithm tiled --truth none --noise 0.0001% --seconds 0.01"
         )
         self.assertEqual(status, 0)
         self.assertIn("interval wider than asked for", text)

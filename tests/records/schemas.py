@@ -12,7 +12,7 @@ import sys
 import tempfile
 import unittest
 
-from tests.program import PROGRAM, SOURCE
+from tests.program import PROGRAM, SOURCE, ran
 from tests.script_case import loaded
 
 MAKER = PROGRAM.parent / "harness/record_schema"
@@ -37,9 +37,7 @@ def table_of(package, records):
     """The header and the first row of `tandem export --csv` by the package in a folder, with the standard
     library only."""
     code = f"import sys; sys.path.insert(0, {str(package)!r}); from tandem.commands.export_csv import main; sys.exit(main(['--records', {str(records)!r}]))"
-    text = subprocess.run(
-        [sys.executable, "-S", "-I", "-c", code], capture_output=True, text=True, check=True
-    ).stdout
+    text = ran([sys.executable, "-S", "-I", "-c", code], check=True).stdout
     return list(csv.reader(text.splitlines()[:2]))
 
 
@@ -64,7 +62,7 @@ class Schemas(unittest.TestCase):
 
     def test_bad_use(self):
         for arguments in ((), ("/dev/null/folder",)):
-            done = subprocess.run([MAKER, *arguments], capture_output=True, text=True, check=False)
+            done = ran([MAKER, *arguments])
             self.assertEqual((done.returncode, done.stdout, done.stderr.count("\n")), (2, "", 1), done.stderr)
 
     def test_every_column_has_a_field_and_a_place(self):
@@ -114,7 +112,7 @@ class Schemas(unittest.TestCase):
             f"import sys; sys.path.insert(0, {str(package)!r}); from tandem.records import read; cells = read({str(RECORDS)!r}).cells; "
             "print(cells['cores'].dtype, cells['cores'].iloc[0])"
         )
-        text = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+        text = ran([sys.executable, "-c", code], check=True).stdout
         self.assertEqual(text.split(), ["Int64", str(record["environment"]["cores"])])
 
     def test_the_page_of_fields_has_every_field(self):

@@ -11,7 +11,7 @@ import math
 import shutil
 import subprocess
 
-from tests.program import LONG, PROGRAM, SMALL, SOURCE, sets
+from tests.program import LONG, PROGRAM, SMALL, SOURCE, ran, sets
 from tests.script_case import ScriptCase, called, committed, rows_of, script
 
 COMMITTED = sorted([*SOURCE.glob("results/*/*.jsonl"), *SOURCE.glob("tests/records/*.jsonl")])
@@ -164,9 +164,7 @@ class Scripts(ScriptCase):
             (programs / "tables", walks),
             (SOURCE / "scripts/convert_records", copy),
         ):
-            done = subprocess.run(
-                ["/usr/bin/python3", "-S", "-I", *map(str, words)], capture_output=True, text=True
-            )
+            done = ran(["/usr/bin/python3", "-S", "-I", *map(str, words)])
             self.assertEqual((done.returncode, done.stderr), (0, ""), words)
             self.assertGreater(len(done.stdout), 20)
         self.assertEqual(copy.read_bytes(), walks.read_bytes())

@@ -39,17 +39,14 @@ def cloth():
 
 def ball():
     """Vertices and triangles of the side of a ball, some of whose coordinates are zero."""
-    points = [
-        (
-            math.cos(2 * math.pi * s / SECTORS) * math.cos(a),
+    points, faces = [], []
+    for r in range(RINGS):
+        a = 1.4 * (2 * r / (RINGS - 1) - 1)
+        height, turns = (
             math.sin(a) if r != RINGS // 2 else 0.0,
-            math.sin(2 * math.pi * s / SECTORS) * math.cos(a),
+            [2 * math.pi * s / SECTORS for s in range(SECTORS)],
         )
-        for r in range(RINGS)
-        for a in [1.4 * (2 * r / (RINGS - 1) - 1)]
-        for s in range(SECTORS)
-    ]
-    faces = []
+        points += [(math.cos(t) * math.cos(a), height, math.sin(t) * math.cos(a)) for t in turns]
     for r in range(RINGS - 1):
         for s in range(SECTORS):
             a, b = r * SECTORS + s, r * SECTORS + (s + 1) % SECTORS
@@ -167,24 +164,15 @@ class External(ScriptCase):
     def test_counts_equal_all_pairs_tested_one_by_one(self):
         kinds = ["vertex-face", "edge-edge", "face-face"]
         expect = ",".join(str(self.counts[kind][1]) for kind in kinds)
-        text = self.run_script(
-            "-",
-            *self.files,
-            "--pairs",
-            ",".join(kinds),
-            "--algorithm",
-            "tiled,leaf_query",
-            "--expect",
-            expect,
-        )
+        options = f"--pairs {','.join(kinds)} --algorithm tiled,leaf_query --expect {expect}"
+        text = self.run_script("-", *self.files, *options.split())
         found = self.lines(text)
         self.assertEqual(list(found), kinds)
         for kind in kinds:
             self.assertGreater(self.counts[kind][1], 100)
             self.assertEqual({line[1:] for line in found[kind]}, {(*self.counts[kind], "equal")}, text)
-            self.assertEqual(
-                [line[0] for line in found[kind]], ["sweep", "tiled on host", "leaf_query on host"]
-            )
+            by = [line[0] for line in found[kind]]
+            self.assertEqual(by, ["sweep", "tiled on host", "leaf_query on host"])
 
     def test_every_kind_of_file(self):
         vertex_face = [

@@ -3,13 +3,12 @@
 """scripts/gpu/test_queue over a program that answers like GoogleTest."""
 
 import os
-import subprocess
 import tempfile
 import time
 import unittest
 from pathlib import Path
 
-from tests.program import SOURCE
+from tests.program import SOURCE, ran
 
 # Suite.Passes, Suite.Fails unless the file "mended" exists, Suite.Skips, Suite.Waits until the file "go"
 # exists, and Other.RunsNothing, which ends well without having run.
@@ -42,11 +41,8 @@ class Queue(unittest.TestCase):
         self.program.chmod(0o755)
 
     def queue(self, seconds):
-        done = subprocess.run(
+        done = ran(
             [SOURCE / "scripts/gpu/test_queue", self.folder / "journal", str(seconds), self.program],
-            capture_output=True,
-            text=True,
-            check=False,
             env={**os.environ, "TEST_PROCESSES": "4"},
         )
         lines = (self.folder / "journal").read_text().splitlines()

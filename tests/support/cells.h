@@ -7,6 +7,7 @@
 #include "backends/registry.h"
 #include "harness/verify/reference.h"
 #include "base/random.h"
+#include "tests/support/test.h"
 
 #include <algorithm>
 #include <set>
@@ -85,6 +86,16 @@ inline std::unique_ptr<Session> prepare_on(Device& on, const Traversal& traversa
 inline std::unique_ptr<Session> prepare_on(Device& on, const Traversal& traversal, const Scene& scene,
                                            const SettingTexts& given = {}) {
     return prepare_on(on, traversal, scene, resolved(traversal, given));
+}
+
+/// Pairs and contacts of a result equal those of another, or of the reference.
+inline void expect_same_digests(const FrameResult& result, const FrameResult& right) {
+    EXPECT_EQ(result.digest(), right.digest());
+    EXPECT_EQ(result.contact_digest(), right.contact_digest());
+}
+inline void expect_same_digests(const FrameResult& result, const ReferenceAnswer& right) {
+    EXPECT_EQ(result.digest(), right.digest);
+    EXPECT_EQ(result.contact_digest(), right.contact_digest);
 }
 
 /// Every data path of the algorithm.
