@@ -3,6 +3,7 @@
 // over all bodies. It keeps a tree for two frames.
 #include "algorithms/leaf_query/leaf_query_parameters.h"
 #include "algorithms/pipeline/stages.h"
+#include "algorithms/traversal.h"
 
 #include <algorithm>
 

@@ -12,6 +12,12 @@ from tests.script_case import ScriptCase, committed, rows_of
 
 
 class Tables(ScriptCase):
+    def counted(self, header, rows):
+        """(launches, launches as in the paper) by the name of a cell."""
+        columns = header.index("launches"), header.index("as theirs")
+        cells = [row for row in rows if len(row) == len(header) and "±" in "".join(row)]
+        return {row[0]: tuple(row[column] for column in columns) for row in cells}
+
     def test_launches_are_counted_as_in_the_paper_too(self):
         """A frame of plates has three launches in the paper's Table 5: 306 in 102 frames."""
         records = [
@@ -21,12 +27,7 @@ class Tables(ScriptCase):
         ]
         header, *rows = rows_of(self.table(*records))
         ratio = next(row for row in rows if row[0] == "published / published")
-        launches, theirs = header.index("launches"), header.index("as theirs")
-        of = {
-            row[0]: (row[launches], row[theirs])
-            for row in rows
-            if len(row) == len(header) and "±" in "".join(row)
-        }
+        of = self.counted(header, rows)
         paper = {
             (row["scene"], row["algorithm"]): int(row["launches"])
             for row in csv.DictReader((SOURCE / "results/paper/table5.csv").read_text().splitlines())
@@ -140,21 +141,8 @@ class Figures(ScriptCase):
         ][:3]
         truth = {**records[0]["error"]["truth"], "contacts": None}
         bare = [{**record, "error": {**record["error"], "truth": truth}} for record in records]
-        nothing = {
-            **truth,
-            **{
-                name: 0
-                for name in (
-                    "touching",
-                    "overlapping",
-                    "missed_touching",
-                    "missed_overlapping",
-                    "candidates",
-                    "false",
-                )
-            },
-            "candidate_ratio": None,
-        }
+        counts = "touching overlapping missed_touching missed_overlapping candidates false".split()
+        nothing = {**truth, **dict.fromkeys(counts, 0), "candidate_ratio": None}
         met = [{**record, "error": {**record["error"], "truth": nothing}} for record in records]
         hard = [
             {**record, "scene": {**record["scene"], "name": "hard", "key": f"hard:touch:difficulty={i}"}}

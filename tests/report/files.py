@@ -8,11 +8,7 @@ import copy
 import json
 import lzma
 import os
-import pathlib
 import random
-import signal
-import subprocess
-import tempfile
 import unittest
 import unittest.mock
 
@@ -21,7 +17,7 @@ from tests.program import LONG, PROGRAM, SOURCE, Case, tandem
 from tandem import files, lines
 from tandem.errors import BadUse, OutputError
 from tandem.files import replace_whole
-from tandem.report import assembly, libraries, scene
+from tandem.report import assembly, libraries
 from tandem.report.data import data_of
 from tandem.report.other_records import Simulations
 from tandem.report.reading import read_records
@@ -299,156 +295,3 @@ class Pages(Case):
         self.assertEqual(path.read_bytes(), b"two" * 1_000_000)
         with self.assertRaisesRegex(OutputError, "nowhere/x.partial: cannot be written"):
             replace_whole(str(self.work / "nowhere/x"), b"")
-
-
-class Commands(Case):
-    """The part of both commands that concerns the scene, which another process of the program exports."""
-
-    def test_errors_of_the_export_are_the_only_line(self):
-        out = ("-o", self.work / "none.html")
-        self.bad("the nearest is 'plates'", "view", "plats", *out)
-        self.bad("no scene; name one", "view", *out)
-        self.bad(
-            "frames 3:900", "report", H200 / "ceilings.jsonl", "--scene", "plates", "--frames", "3:900", *out
-        )
-        self.bad(
-            "--device all: contacts need one device", "view", "plates", "--contacts", "--device", "all", *out
-        )
-        self.bad(
-            "more --pose than --mesh",
-            "view",
-            "--mesh",
-            self.good,
-            "--pose",
-            "1 0 0 1 0 0 0",
-            "--pose",
-            "0 0 0 1 0 0 0",
-            *out,
-        )
-        self.bad("--every", "view", "plates", "--every", 0, *out)
-        self.bad("--frames requires --scene", "report", H200 / "ceilings.jsonl", "--frames", 0, *out)
-        self.assertFalse((self.work / "none.html").exists())
-
-    def test_sentences_of_the_page(self):
-        """What the page says of each group and of all together, before the line that names the page."""
-        page, data = (
-            self.work / "words.html",
-            json.loads(data_of(read_records([H200 / "plan.jsonl"]), 7_000_000, "", "").json),
-        )
-        status, out, errors = tandem("report", H200 / "plan.jsonl", "-o", page, "--sentences")
-        self.assertEqual((status, errors), (0, []))
-        self.assertGreater(len(data["groups"]), 3)
-        self.assertEqual(
-            out.splitlines()[:-1],
-            [f"{group['title']}: {group['words']}" for group in data["groups"]] + data["words"],
-        )
-        self.assertTrue(out.splitlines()[-1].startswith(f"{page}: "))
-        self.assertIn("of the difference from", out)
-
-    def without_packages(self, *words):
-        """tandem report in a Python that has only NumPy, which scripts/setup installs for scripts/run."""
-        text = (
-            "import importlib.util, sys\nfind = importlib.util.find_spec\nwithout = ('pandas', 'scipy', 'matplotlib')\n"
-            "sys.modules.update(dict.fromkeys(without))\nimportlib.util.find_spec = lambda name: None if name in without else find(name)\n"
-            f"sys.path.insert(0, {str(SOURCE / 'python')!r})\nfrom tandem.commands import report\nsys.exit(report.main(sys.argv[2:], sys.argv[1]))"
-        )
-        return subprocess.run(
-            ["/usr/bin/python3", "-c", text, PROGRAM, *words],
-            capture_output=True,
-            text=True,
-            env=os.environ | {"TANDEM_PYTHON_TRIED": "1"},
-        )
-
-    def test_one_session_needs_no_scipy(self):
-        """Its verdict is recorded. Another verdict, and the sentence of a chart of a part of its cells, need scipy."""
-        records, page = self.work / "session.jsonl", self.work / "numpy.html"
-        chosen = ["--algorithm", "tiled,chunked", "--set", "seed_threshold=0,10,100", "--repeat", 3]
-        status, text, errors = tandem("run", "plates", "--frames", "60:60", *chosen, "--out", records)
-        self.assertEqual((status, errors), (0, []), text)
-        done = self.without_packages(records, f"--output={page}", "--sentences")
-        self.assertEqual((done.returncode, done.stderr), (0, ""))
-        self.assertIn(" of 4 with ", done.stdout)
-        self.assertIn("Times over seed_threshold", page.read_text())
-        more = [json.loads(line) for line in records.read_text().splitlines()]
-        cells = [record | {"session": "another"} for record in more if "kind" not in record]
-        records.write_text("".join(json.dumps(cell) + "\n" for cell in cells))
-        done = self.without_packages(records, f"--output={page}")
-        self.assertEqual((done.returncode, done.stdout), (2, ""))
-        self.assertIn("tandem report needs python3 with scipy; install python3-scipy", done.stderr)
-
-    def test_options_reach_the_export(self):
-        page = self.work / "meshes.html"
-        status, out, errors = tandem(
-            "view",
-            "--mesh",
-            self.good,
-            "--mesh",
-            self.good,
-            "--pose",
-            "-1 0 0 1 0 0 0",
-            "--contacts",
-            "-o",
-            page,
-        )
-        self.assertEqual((status, errors), (0, []))
-        self.assertRegex(out, r"^.*meshes\.html: 1 frame of .*, 0\.9 MB\n$")
-        scene = json.loads(page.read_text().split('id="data-scene">')[1].split("</script>")[0])
-        self.assertEqual((scene["bodies"], scene["frames"], len(scene["contacts"])), (2, [0], 1))
-        status, out, _ = tandem("view", "plates", "--frames", "2:9", "--every", 3, "-o", page)
-        self.assertRegex(out, r": 3 frames of plates")
-        done = subprocess.run(
-            [PROGRAM, "view", "plates", "--frames", "0"], cwd=self.work, capture_output=True, text=True
-        )
-        self.assertEqual((done.returncode, done.stderr, (self.work / "plates.html").exists()), (0, "", True))
-
-    def end_group(self, group):
-        """Cleans up after a failed test."""
-        try:
-            os.killpg(group, signal.SIGKILL)
-        except ProcessLookupError:
-            pass
-
-    def test_a_signal_ends_the_export_and_leaves_nothing(self):
-        folder = self.work / "temporary"
-        folder.mkdir()
-        minutes = ("pile:bodies=2000,frames=300", "--contacts")
-        process = subprocess.Popen(
-            [PROGRAM, "view", *minutes, "-o", self.work / "ended.html"],
-            stderr=subprocess.PIPE,
-            text=True,
-            env={**os.environ, "TMPDIR": str(folder)},
-            start_new_session=True,
-        )
-        self.addCleanup(self.end_group, process.pid)
-        while not any(folder.iterdir()) and process.poll() is None:
-            pass
-        process.terminate()
-        _, errors = process.communicate()
-        self.assertEqual((process.returncode, errors), (143, ""))
-        self.assertEqual(list(folder.iterdir()), [])
-        self.assertFalse((self.work / "ended.html").exists())
-
-    def test_a_signal_before_the_export_starts(self):
-        for number in (signal.SIGTERM, signal.SIGINT):
-            late, made = [], []
-            self.addCleanup(
-                signal.signal,
-                number,
-                signal.signal(number, lambda *_, late=late: late.append("a handler of the test")),
-            )
-
-            def signalled(made=made, number=number, **options):
-                made.append(tempfile.TemporaryDirectory(**options))
-                os.kill(os.getpid(), number)
-                return made[-1]
-
-            with (
-                unittest.mock.patch.object(
-                    files, "tempfile", unittest.mock.Mock(TemporaryDirectory=signalled)
-                ),
-                self.assertRaises(scene.ExportEnded) as ended,
-            ):
-                scene.shown_scene(PROGRAM, ["plates", "--frames=0"])
-            self.assertEqual(
-                (ended.exception.code, late, pathlib.Path(made[0].name).exists()), (128 + number, [], False)
-            )

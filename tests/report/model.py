@@ -35,6 +35,13 @@ def stage_ns(us, frames):
     return {STAGE[part]: {"device_ns": us[part] * frames * 1e3, "host_ns": 0} for part in STAGE}
 
 
+def exchange_of(chance, frames):
+    """Messages and bytes of a rank, with the time that they take."""
+    messages, sent = chance.randrange(1, 20) * frames, chance.randrange(1000, 1000000) * frames
+    host_ns = (EXCHANGE[0] * frames + 3 * messages + 2e-4 * sent) * 1e3
+    return {"messages": messages, "bytes": sent, "host_ns": host_ns}
+
+
 def record(chance, bodies, devices, with_ranks=False, frames=2):
     """A synthetic record of an evenly partitioned scene, computed from the known coefficients."""
     own, body_pairs, pairs = (
@@ -69,15 +76,7 @@ def record(chance, bodies, devices, with_ranks=False, frames=2):
             known=local_bodies if with_ranks else None,
         )
         us = {part: known_us(part, counts, chance) for part in KNOWN}
-        exchange = (
-            {"messages": chance.randrange(1, 20) * frames, "bytes": chance.randrange(1000, 1000000) * frames}
-            if with_ranks
-            else None
-        )
-        if exchange:
-            exchange["host_ns"] = (
-                EXCHANGE[0] * frames + 3 * exchange["messages"] + 2e-4 * exchange["bytes"]
-            ) * 1e3
+        exchange = exchange_of(chance, frames) if with_ranks else None
         parts.append(
             {
                 "ns": {"median": sum(us.values()) * frames * 1e3},

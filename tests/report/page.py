@@ -388,26 +388,3 @@ class Pages(ReportCase):
             self.browser.run(f"{ROWS}.length"),
             self.browser.run("JSON.parse(document.getElementById('data-records').textContent).cells.length"),
         )
-
-    def test_view_of_a_large_scene_is_reduced(self):
-        page = self.work / "view.html"
-        status, out, errors = tandem("view", "pile:bodies=4000,density=0.3,frames=60", "-o", page)
-        self.assertEqual((status, errors), (0, []), out)
-        self.assertLess(page.stat().st_size, 8e6)
-        self.opened(page)
-        words = self.browser.run("document.getElementById('view').textContent")
-        self.assertIn("drawn as boxes", words)
-        self.assertRegex(words, r"\d+ of 60 frames are shown")
-        self.assertGreater(self.browser.run(HUES), 3)  # bodies of one mesh have several
-
-    def test_without_webgl(self):
-        page = self.work / "plain.html"
-        self.assertEqual(tandem("view", "plates", "--frames", "0:1", "-o", page)[0], 0)
-        script = self.browser.ask(
-            "Page.addScriptToEvaluateOnNewDocument",
-            source="HTMLCanvasElement.prototype.getContext = () => null",
-        )
-        self.browser.open(page)
-        self.browser.ask("Page.removeScriptToEvaluateOnNewDocument", identifier=script["identifier"])
-        self.browser.until("Boolean(document.querySelector('#view .bad'))")
-        self.assertIn("no WebGL", self.browser.run("document.getElementById('view').textContent"))
