@@ -7,6 +7,8 @@
 #include "tests/support/cells.h"
 #include "tests/support/test.h"
 
+#include <nlohmann/json.hpp>
+
 namespace tandem {
 namespace {
 
