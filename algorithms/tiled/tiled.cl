@@ -61,11 +61,9 @@ DEVICE void load_upper_sides(const UpperWalk* walk, GLOBAL const real* roots, Te
     if (WINDOWED) lanes_in_window(walk->status, &turn->a, walk->level, sides->keeps_a);
 }
 
-// Appends hits to the waiting pairs, and writes these once they are enough. A whole team calls it.
-DEVICE void emit_tile_pairs(const UpperWalk* walk, Team* team, const Turn* turn, Sides* sides) {
-    // The boxes of a tile are the tiles below, or the tile itself is its only box.
-    const uint first_a = turn->a.level == walk->level ? turn->a.boxes : turn->pair.a;
-    const uint first_b = turn->b.level == walk->level ? turn->b.boxes : turn->pair.b;
+// Appends hits to the waiting pairs, and writes these once they are enough. Box i of a has number first_a +
+// i. A whole team calls it.
+DEVICE void emit_tile_pairs(const UpperWalk* walk, Team* team, uint first_a, uint first_b, Sides* sides) {
     if (SELF && first_a == first_b) keep_ascending(sides);
     int more;
     do {
@@ -122,8 +120,12 @@ KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL
         }
         end_rows(&team, rows);
         LANE_BARRIER;
+        // The boxes of a tile are the tiles below, or the tile itself is its only box. Known before the rows
+        // are tested, these two take fewer registers.
+        const uint first_a = turn.a.level == level ? turn.a.boxes : turn.pair.a;
+        const uint first_b = turn.b.level == level ? turn.b.boxes : turn.pair.b;
         FIND_HITS(&team, rows, box, DIRECTIONS, sides.keeps_a, sides.hits)
-        emit_tile_pairs(&walk, &team, &turn, &sides);
+        emit_tile_pairs(&walk, &team, first_a, first_b, &sides);
     } while (turns.next < turn_count(&turns));
     const uint waiting = reserved_slots(&team.found);
     reserve(&team, waiting, 1, status + STATUS_TILE_PAIRS + 2u * (level - 1u));
