@@ -46,7 +46,7 @@ void EarlyEnds::end_everywhere(const Traversal& traversal, const SettingTexts& g
     const auto launches = run_until(*session, frame, all);
     EXPECT_GE(launches, 3u);
     for (std::size_t last = 1; last <= launches; ++last) {
-        EXPECT_EQ(run_until(*session, frame, last), last);
+        run_until(*session, frame, last);
         const auto result = session->run(frame);
         EXPECT_EQ(result.digest(), right.digest()) << "after an end at launch " << last;
         EXPECT_EQ(result.contact_digest(), right.contact_digest());

@@ -2,6 +2,12 @@
 // The kernels of the contact stage, on pairs of tetrahedra without bodies or a session.
 #pragma once
 
+#include "algorithms/answer/digest_contacts.cl.h"
+#include "algorithms/narrow_phase/certify.cl.h"
+#include "algorithms/narrow_phase/contacts.cl.h"
+#include "algorithms/narrow_phase/filter.cl.h"
+#include "algorithms/narrow_phase/recheck.cl.h"
+#include "algorithms/narrow_phase/separate.cl.h"
 #include "tests/support/test.h"
 #include "tests/unit/contacts/pairs.h"
 
@@ -112,16 +118,33 @@ public:
         if (!at_once) find_meeting(defines, settings.decision, first, pair_capacity, status);
         defines["DECIDED"] = decided_define(settings.decision, has_verdicts(settings.decision));
         defines["AT_ONCE"] = at_once ? "1" : "0";
-        const std::array<Argument, 14> generate{found_,      first,     pair_capacity, bodies_,   poses_,
-                                                tetrahedra_, vertices_, boundary_,     verdicts_, meeting_,
-                                                rows,        values,    capacity,      status};
-        launch("contacts.cl", "generate_contacts", defines, generate);
+        const kernels::contacts::GenerateContacts generate{.found = found_,
+                                                           .first = first,
+                                                           .pair_capacity = pair_capacity,
+                                                           .owners = bodies_,
+                                                           .poses = poses_,
+                                                           .tetrahedra = tetrahedra_,
+                                                           .vertices = vertices_,
+                                                           .boundary = boundary_,
+                                                           .verdicts = verdicts_,
+                                                           .meeting = meeting_,
+                                                           .contact_ids = rows,
+                                                           .contact_values = values,
+                                                           .contact_capacity = capacity,
+                                                           .status = status};
+        launch(defines, generate);
         device_.download(status, std::as_writable_bytes(std::span(outcome.status)));
         const auto made =
             static_cast<std::uint32_t>(std::min<std::uint64_t>(outcome.counter(STATUS_CONTACTS), capacity));
         const Buffer sums = uploaded(outcome.sums);
-        const std::array<Argument, 7> digest{found_, bodies_, ids_, rows, values, made, sums};
-        launch("digest_contacts.cl", "digest_contacts", digesting, digest);
+        const kernels::digest_contacts::DigestContacts digest{.found = found_,
+                                                              .owners = bodies_,
+                                                              .ids = ids_,
+                                                              .contact_ids = rows,
+                                                              .value_bits = values,
+                                                              .count = made,
+                                                              .sums = sums};
+        launch(digesting, digest);
         device_.download(sums, std::as_writable_bytes(std::span(outcome.sums)));
         device_.download(rows, std::as_writable_bytes(std::span(outcome.rows)));
         device_.download(values, std::as_writable_bytes(std::span(outcome.values)));
@@ -129,54 +152,81 @@ public:
     }
 
 private:
-    void launch(const std::string& file, std::string_view entry, const Defines& defines,
-                std::span<const Argument> arguments) {
-        const auto kernel = device_.compile(kernel_source("algorithms/narrow_phase/" + file), entry, defines);
+    template<class Arguments>
+    void launch(const Defines& defines, const Arguments& arguments) {
+        KernelOf<Arguments> kernel;
+        compile_kernel(device_, kernel, defines);
         device_.launch(kernel, {16, group_size_}, arguments);
     }
 
     void find_meeting(Defines defines, DecisionPrecision decision, std::uint32_t first,
                       std::uint32_t pair_capacity, const Buffer& status) {
-        const std::array<Argument, 12> certify{found_,    first,       pair_capacity, bodies_,
-                                               poses_,    tetrahedra_, vertices_,     boundary_,
-                                               verdicts_, open_,       meeting_,      status};
+        const kernels::certify::CertifyPairs certify{.found = found_,
+                                                     .first = first,
+                                                     .pair_capacity = pair_capacity,
+                                                     .owners = bodies_,
+                                                     .poses = poses_,
+                                                     .tetrahedra = tetrahedra_,
+                                                     .vertices = vertices_,
+                                                     .boundary = boundary_,
+                                                     .verdicts = verdicts_,
+                                                     .open = open_,
+                                                     .meeting = meeting_,
+                                                     .status = status};
         const bool decides_open =
             decision == DecisionPrecision::recheck || decision == DecisionPrecision::exact;
         defines["DECIDED"] = decided_define(decision, decision == DecisionPrecision::fp64);
-        launch("certify.cl", "certify_pairs", defines, certify);
+        launch(defines, certify);
         if (decides_open) decide(defines, decision, first, pair_capacity, status, true);
-        const std::array<Argument, 10> separate{found_,    first,     bodies_, poses_,   tetrahedra_,
-                                                vertices_, verdicts_, open_,   meeting_, status};
+        const kernels::separate::SeparatePairs separate{.found = found_,
+                                                        .first = first,
+                                                        .owners = bodies_,
+                                                        .poses = poses_,
+                                                        .tetrahedra = tetrahedra_,
+                                                        .vertices = vertices_,
+                                                        .verdicts = verdicts_,
+                                                        .open = open_,
+                                                        .meeting = meeting_,
+                                                        .status = status};
         defines["DECIDED"] = decided_define(decision, has_verdicts(decision));
-        launch("separate.cl", "separate_pairs", defines, separate);
+        launch(defines, separate);
     }
 
     /// `open`: only pairs that certify_pairs has left undecided.
     void decide(Defines defines, DecisionPrecision decision, std::uint32_t first, std::uint32_t pair_capacity,
                 const Buffer& status, bool open) {
         if (!has_verdicts(decision)) return;
-        const std::array<Argument, 12> filter{
-            found_, first,     pair_capacity,        bodies_, poses_, tetrahedra_, vertices_, boundary_,
-            open_,  verdicts_, undecided_by_filter_, status};
+        const kernels::filter::FilterPairs filter{.found = found_,
+                                                  .first = first,
+                                                  .pair_capacity = pair_capacity,
+                                                  .owners = bodies_,
+                                                  .poses = poses_,
+                                                  .tetrahedra = tetrahedra_,
+                                                  .vertices = vertices_,
+                                                  .boundary = boundary_,
+                                                  .open = open_,
+                                                  .verdicts = verdicts_,
+                                                  .undecided_by_filter = undecided_by_filter_,
+                                                  .status = status};
         defines.erase("CONTACT_RULE");
         defines.erase("DECIDED");
         auto filtering = defines;
         filtering["OVER_OPEN"] = open ? "1" : "0";
-        if (decision != DecisionPrecision::fp64) launch("filter.cl", "filter_pairs", filtering, filter);
+        if (decision != DecisionPrecision::fp64) launch(filtering, filter);
         defines["RECHECK_ALL"] = decision == DecisionPrecision::fp64 ? "1" : "0";
-        const std::array<Argument, 12> recheck{found_,
-                                               first,
-                                               pair_capacity,
-                                               bodies_,
-                                               poses_,
-                                               tetrahedra_,
-                                               vertices_,
-                                               boundary_,
-                                               verdicts_,
-                                               undecided_by_filter_,
-                                               undecided_by_double_,
-                                               status};
-        launch("recheck.cl", "recheck_pairs", defines, recheck);
+        const kernels::recheck::RecheckPairs recheck{.found = found_,
+                                                     .first = first,
+                                                     .pair_capacity = pair_capacity,
+                                                     .owners = bodies_,
+                                                     .poses = poses_,
+                                                     .tetrahedra = tetrahedra_,
+                                                     .vertices = vertices_,
+                                                     .boundary = boundary_,
+                                                     .verdicts = verdicts_,
+                                                     .undecided_by_filter = undecided_by_filter_,
+                                                     .undecided_by_double = undecided_by_double_,
+                                                     .status = status};
+        launch(defines, recheck);
     }
 
     template<class T>
