@@ -2,6 +2,9 @@
 // Kernels at body pairs past 2^31, where twice an index wraps in 32 bits. No scene has so many pairs: tables
 // are mapped without memory behind them and have one nonzero row. A traversal gets one seed, or one item, of
 // that pair. Host kernels compile from the same source as all others.
+#include "algorithms/chunked/chunked.cl.h"
+#include "algorithms/gproximity/gproximity.cl.h"
+#include "algorithms/leaf_query/body_query.cl.h"
 #include "algorithms/chunked/levels.clh"
 #include "algorithms/gproximity/queues.clh"
 #include "algorithms/kernels/sources.h"
@@ -56,10 +59,13 @@ protected:
         expected = reference(two, frame, {}, false, Method::sweep).digest.count;
     }
 
-    Kernel compile(const char* file, const char* entry, Defines more = {}) {
+    template<class Arguments>
+    KernelOf<Arguments> compiled(Defines more = {}) {
         auto defines = on.trees.defines(1);
         defines.merge(more);
-        return host.compile(kernel_source(file), entry, defines);
+        KernelOf<Arguments> kernel;
+        compile_kernel(host, kernel, defines);
+        return kernel;
     }
 
     Buffer uploaded(std::span<const std::byte> bytes) {
@@ -69,11 +75,51 @@ protected:
         return buffer;
     }
 
-    std::uint32_t found_by(const Kernel& kernel, std::span<const Argument> arguments, const Buffer& status) {
+    template<class Arguments>
+    std::uint32_t found_by(const KernelOf<Arguments>& kernel, const Arguments& arguments,
+                           const Buffer& status) {
         const StageScope scope(host, Stage::traverse);
         host.launch(kernel, {1, 1}, arguments);
         host.download(status, std::as_writable_bytes(std::span(words)));
         return words[STATUS_PAIRS];
+    }
+
+    /// Traverses the far pair from one seed by either kernel of chunked.
+    template<class Arguments>
+    void traverse_far_pair() {
+        words.assign(STATUS_WORDS, 0);
+        words[STATUS_BODY_PAIRS] = pair_count;
+        words[STATUS_LEVELS] = 1; // one seed from the previous level
+        const auto status = uploaded(bytes_of(words));
+        const auto seed = uploaded(bytes_of(std::vector<std::uint32_t>{far_pair, 0, 0}));
+        const auto found = host.allocate(expected * 16, "found");
+        const auto table = pairs.adopted(host);
+        const auto seeds = starts.adopted(host);
+        const Arguments arguments{.nodes = on.trees.nodes(),
+                                  .trees = on.trees.tree_table(),
+                                  .levels = on.trees.level_table(),
+                                  .bodies = on.bodies.row_table(),
+                                  .ids = on.bodies.ids(),
+                                  .tetrahedra = on.bodies.tetrahedra(),
+                                  .pairs = table,
+                                  .pair_capacity = pair_count,
+                                  .level = 0u,
+                                  .seeds = seeds,
+                                  .handed = seed,
+                                  .handed_capacity = 1u,
+                                  .below = seed,
+                                  .below_capacity = 0u,
+                                  .found = found,
+                                  .capacity = static_cast<std::uint32_t>(expected),
+                                  .status = status};
+        EXPECT_EQ(found_by(compiled<Arguments>(), arguments, status), expected);
+        std::vector<std::uint32_t> rows(expected * 4);
+        const StageScope scope(host, Stage::read);
+        host.download(found, std::as_writable_bytes(std::span(rows)));
+        for (std::size_t i = 0; i < rows.size(); i += 4) {
+            ASSERT_EQ(rows[i], 0u);
+            ASSERT_EQ(rows[i + 1], 1u);
+        }
     }
 
     Device& host = device("host");
@@ -87,41 +133,8 @@ protected:
 
 TEST_F(Limits, ChunkedTraversesABodyPairPastHalfTheRange) {
     ASSERT_GT(expected, 100u);
-    for (const auto* entry : {"traverse", "traverse_in_groups"}) {
-        words.assign(STATUS_WORDS, 0);
-        words[STATUS_BODY_PAIRS] = pair_count;
-        words[STATUS_LEVELS] = 1; // one seed from the previous level
-        const auto status = uploaded(bytes_of(words));
-        const auto seed = uploaded(bytes_of(std::vector<std::uint32_t>{far_pair, 0, 0}));
-        const auto found = host.allocate(expected * 16, "found");
-        const auto table = pairs.adopted(host);
-        const auto seeds = starts.adopted(host);
-        const std::array<Argument, 17> arguments{on.trees.nodes(),
-                                                 on.trees.tree_table(),
-                                                 on.trees.level_table(),
-                                                 on.bodies.row_table(),
-                                                 on.bodies.ids(),
-                                                 on.bodies.tetrahedra(),
-                                                 table,
-                                                 pair_count,
-                                                 0u,
-                                                 seeds,
-                                                 seed,
-                                                 1u,
-                                                 seed,
-                                                 0u,
-                                                 found,
-                                                 static_cast<std::uint32_t>(expected),
-                                                 status};
-        EXPECT_EQ(found_by(compile("algorithms/chunked/chunked.cl", entry), arguments, status), expected);
-        std::vector<std::uint32_t> rows(expected * 4);
-        const StageScope scope(host, Stage::read);
-        host.download(found, std::as_writable_bytes(std::span(rows)));
-        for (std::size_t i = 0; i < rows.size(); i += 4) {
-            ASSERT_EQ(rows[i], 0u);
-            ASSERT_EQ(rows[i + 1], 1u);
-        }
-    }
+    traverse_far_pair<kernels::chunked::Traverse>();
+    traverse_far_pair<kernels::chunked::TraverseInGroups>();
 }
 
 TEST_F(Limits, QueuesTraverseABodyPairPastHalfTheRange) {
@@ -135,23 +148,21 @@ TEST_F(Limits, QueuesTraverseABodyPairPastHalfTheRange) {
     const auto idle = uploaded(bytes_of(std::vector<std::uint32_t>{0}));
     const auto found = host.allocate(expected * 16, "found");
     const auto table = pairs.adopted(host);
-    const std::array<Argument, 13> arguments{on.trees.nodes(),
-                                             on.trees.tree_table(),
-                                             on.bodies.row_table(),
-                                             on.bodies.ids(),
-                                             on.bodies.tetrahedra(),
-                                             table,
-                                             queue,
-                                             counts,
-                                             capacity,
-                                             idle,
-                                             found,
-                                             static_cast<std::uint32_t>(expected),
-                                             status};
+    const kernels::gproximity::TraverseQueues arguments{.nodes = on.trees.nodes(),
+                                                        .trees = on.trees.tree_table(),
+                                                        .bodies = on.bodies.row_table(),
+                                                        .ids = on.bodies.ids(),
+                                                        .tetrahedra = on.bodies.tetrahedra(),
+                                                        .pairs = table,
+                                                        .items = queue,
+                                                        .counts = counts,
+                                                        .queue_capacity = capacity,
+                                                        .idle = idle,
+                                                        .found = found,
+                                                        .capacity = static_cast<std::uint32_t>(expected),
+                                                        .status = status};
     const Defines defines{{"LOCAL_QUEUE", "50000"}, {"REFILL", "1"}, {"FULL_EXIT", "0"}, {"IDLE_LIMIT", "9"}};
-    EXPECT_EQ(found_by(compile("algorithms/gproximity/gproximity.cl", "traverse_queues", defines), arguments,
-                       status),
-              expected);
+    EXPECT_EQ(found_by(compiled<kernels::gproximity::TraverseQueues>(defines), arguments, status), expected);
 }
 
 /// A queue with more node pairs than it has rows, which the host's balance never makes.
@@ -163,22 +174,22 @@ TEST_F(Limits, AQueueBeyondItsCapacityIsReported) {
     const auto found = host.allocate(expected * 16, "found");
     const auto table = pairs.adopted(host);
     const Defines defines{{"LOCAL_QUEUE", "4"}, {"IDLE_LIMIT", "1"}};
-    const auto kernel = compile("algorithms/gproximity/gproximity.cl", "traverse_queues", defines);
+    const auto kernel = compiled<kernels::gproximity::TraverseQueues>(defines);
     for (const std::uint32_t stored : {4u, 5u}) {
         const auto counts = uploaded(bytes_of(std::vector<std::uint32_t>{stored}));
-        const std::array<Argument, 13> arguments{on.trees.nodes(),
-                                                 on.trees.tree_table(),
-                                                 on.bodies.row_table(),
-                                                 on.bodies.ids(),
-                                                 on.bodies.tetrahedra(),
-                                                 table,
-                                                 queue,
-                                                 counts,
-                                                 4u,
-                                                 idle,
-                                                 found,
-                                                 static_cast<std::uint32_t>(expected),
-                                                 status};
+        const kernels::gproximity::TraverseQueues arguments{.nodes = on.trees.nodes(),
+                                                            .trees = on.trees.tree_table(),
+                                                            .bodies = on.bodies.row_table(),
+                                                            .ids = on.bodies.ids(),
+                                                            .tetrahedra = on.bodies.tetrahedra(),
+                                                            .pairs = table,
+                                                            .items = queue,
+                                                            .counts = counts,
+                                                            .queue_capacity = 4u,
+                                                            .idle = idle,
+                                                            .found = found,
+                                                            .capacity = static_cast<std::uint32_t>(expected),
+                                                            .status = status};
         found_by(kernel, arguments, status);
         EXPECT_EQ(words[STATUS_EXCEEDED + EXCEEDED_QUEUE], stored > 4 ? 1u : 0u);
     }
@@ -189,23 +200,23 @@ TEST_F(Limits, QueriesBeyondTheirBlocksAreReported) {
     const auto found = host.allocate(expected * 16, "found");
     const std::vector<std::uint32_t> pair{0, 1};
     const auto table = uploaded(bytes_of(pair));
-    const auto kernel = compile("algorithms/leaf_query/body_query.cl", "query_leaves");
+    const auto kernel = compiled<kernels::body_query::QueryLeaves>();
     const auto needed = on.bodies.row(0).tetrahedron_count;
     for (const std::uint32_t blocks : {needed, needed - 1}) {
         words.assign(STATUS_WORDS, 0);
         words[STATUS_BODY_PAIRS] = 1;
         const auto status = uploaded(bytes_of(words));
-        const std::array<Argument, 11> arguments{on.trees.nodes(),
-                                                 on.trees.tree_table(),
-                                                 on.bodies.row_table(),
-                                                 on.bodies.ids(),
-                                                 on.bodies.tetrahedra(),
-                                                 table,
-                                                 1u,
-                                                 blocks,
-                                                 found,
-                                                 static_cast<std::uint32_t>(expected),
-                                                 status};
+        const kernels::body_query::QueryLeaves arguments{.nodes = on.trees.nodes(),
+                                                         .trees = on.trees.tree_table(),
+                                                         .bodies = on.bodies.row_table(),
+                                                         .ids = on.bodies.ids(),
+                                                         .tetrahedra = on.bodies.tetrahedra(),
+                                                         .pairs = table,
+                                                         .pair_capacity = 1u,
+                                                         .blocks = blocks,
+                                                         .found = found,
+                                                         .capacity = static_cast<std::uint32_t>(expected),
+                                                         .status = status};
         const auto count = found_by(kernel, arguments, status);
         EXPECT_EQ(count == expected, blocks == needed);
         EXPECT_EQ(words[STATUS_EXCEEDED + EXCEEDED_QUERIES], blocks == needed ? 0u : 1u);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Numbers past 32 bits, for which no scene is large enough: the sum of gProximity's queues, and explicit body
 // pairs.
+#include "algorithms/gproximity/balance.cl.h"
 #include "algorithms/gproximity/queues.clh"
 #include "algorithms/kernels/sources.h"
 #include "tests/support/on_device.h"
@@ -20,14 +21,19 @@ protected:
                                       std::vector<std::uint32_t>& starts) {
         const StageScope scope(on, Stage::balance);
         const auto queues = static_cast<std::uint32_t>(counts.size());
-        const auto kernel = on.compile(kernel_source("algorithms/gproximity/balance.cl"), "plan_balance",
-                                       {{"PRECISION", "32"}, {"GROUP_SIZE", std::to_string(group_size)}});
+        KernelOf<kernels::balance::PlanBalance> kernel;
+        compile_kernel(on, kernel, {{"PRECISION", "32"}, {"GROUP_SIZE", std::to_string(group_size)}});
         const auto counts_on = on.allocate(queues * 4, "counts");
         const auto starts_on = on.allocate((queues + 1) * 4, "starts");
         const auto totals_on = on.allocate(8, "totals");
         on.upload(counts_on, bytes_of(counts));
-        const std::array<Argument, 6> arguments{counts_on, queues, 2u, 0xffffffffu, starts_on, totals_on};
-        on.launch(kernel, {1, group_size}, arguments);
+        on.launch(kernel, {1, group_size},
+                  {.counts = counts_on,
+                   .queues = queues,
+                   .low = 2u,
+                   .high = 0xffffffffu,
+                   .starts = starts_on,
+                   .totals = totals_on});
         std::array<std::uint32_t, 2> totals{};
         on.download(totals_on, std::as_writable_bytes(std::span(totals)));
         starts.resize(queues + 1);
