@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # test: cost=10
-"""choosing.py PROGRAM SOURCE: --algorithm auto: its candidates, messages, records and files."""
+"""--algorithm auto: its candidates, messages, records and files."""
 
 import json
 import tempfile
