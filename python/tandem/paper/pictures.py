@@ -106,7 +106,7 @@ def figure2(folder):
         folder,
         2,
         [("funnel", 0.5), ("funnel", 1.0), ("colosseum", 0.0), ("colosseum", 1.0)],
-        "Bodies in a funnel and a building that stands: two of the paper's four kinds of simulation",
+        "Bodies in a funnel, and a building: two of the paper's four kinds of simulation",
     )
 
 
@@ -115,7 +115,7 @@ def figure6(folder):
         folder,
         6,
         [(scene, 1.0) for scene in ("glasses", "funnel", "colosseum", "plates", "tower")],
-        "The five test scenes, at the end of their steps",
+        "Test scenes of the paper, at the end of their steps",
     )
 
 

@@ -161,7 +161,7 @@ def table1(folder):
         ordered(rows),
         (
             "Contacts found are those before, contacts kept those after the reduction of contacts of a step. The paper counts contacts kept. Rows with "
-            "other numbers of steps are not comparable: contacts become many only in the last third of the paper's 500 steps. "
+            "other numbers of steps are not comparable, because contacts change over the steps. "
             "In our scene plates, a script moves the plates.",
         ),
     )

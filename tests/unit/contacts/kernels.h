@@ -100,9 +100,7 @@ public:
     ContactOutcome<Real> run(std::uint32_t first, std::uint32_t pairs, std::uint32_t high,
                              std::uint32_t pair_capacity, std::uint32_t capacity,
                              ContactSettings settings = {}) {
-        Defines defines{{"PRECISION", sizeof(Real) == 8 ? "64" : "32"},
-                        {"GROUP_SIZE", std::to_string(group_size_)}};
-        const Defines digesting = defines;
+        auto defines = this->defines();
         defines["BOUNDARY_NEEDED"] = std::to_string(boundaries_needed(settings.rule));
         ContactOutcome<Real> outcome{std::vector<std::uint32_t>(STATUS_WORDS),
                                      std::vector<PairFeature>(capacity + 8, {~0u, ~0u}),
@@ -137,14 +135,7 @@ public:
         const auto made =
             static_cast<std::uint32_t>(std::min<std::uint64_t>(outcome.counter(STATUS_CONTACTS), capacity));
         const Buffer sums = uploaded(outcome.sums);
-        const kernels::digest_contacts::DigestContacts digest{.found = found_,
-                                                              .owners = bodies_,
-                                                              .ids = ids_,
-                                                              .contact_ids = rows,
-                                                              .value_bits = values,
-                                                              .count = made,
-                                                              .sums = sums};
-        launch(digesting, digest);
+        digest(rows, values, made, sums);
         device_.download(sums, std::as_writable_bytes(std::span(outcome.sums)));
         device_.download(rows, std::as_writable_bytes(std::span(outcome.rows)));
         device_.download(values, std::as_writable_bytes(std::span(outcome.values)));
@@ -157,6 +148,22 @@ private:
         KernelOf<Arguments> kernel;
         compile_kernel(device_, kernel, defines);
         device_.launch(kernel, {16, group_size_}, arguments);
+    }
+
+    /// Adds the terms of the first `made` contacts to `sums`.
+    void digest(const Buffer& rows, const Buffer& values, std::uint32_t made, const Buffer& sums) {
+        const kernels::digest_contacts::DigestContacts arguments{.found = found_,
+                                                                 .owners = bodies_,
+                                                                 .ids = ids_,
+                                                                 .contact_ids = rows,
+                                                                 .value_bits = values,
+                                                                 .count = made,
+                                                                 .sums = sums};
+        launch(defines(), arguments);
+    }
+
+    Defines defines() const {
+        return {{"PRECISION", sizeof(Real) == 8 ? "64" : "32"}, {"GROUP_SIZE", std::to_string(group_size_)}};
     }
 
     void find_meeting(Defines defines, DecisionPrecision decision, std::uint32_t first,
