@@ -124,16 +124,22 @@ TEST_F(RankSessions, NextGhostsFitIntoTheSession) {
         return last_.shared[static_cast<std::size_t>(job->rank())].bodies;
     };
     bool is_stored_for_it = true;
-    auto of_subdomain = run(0);
-    for (int unchanged = 0, i = 0; unchanged < 10 && i < 5000; ++i) {
-        const bool is_new = last_.repartitions != 0;
-        const auto earlier = stored();
+    std::size_t of_subdomain = 0, with_ghosts = 0;
+    std::vector<std::uint32_t> earlier;
+    // Measured times decide when bodies are partitioned again. If that is in frame 1, it begins again.
+    for (int attempt = 0; attempt < 50 && (attempt == 0 || last_.repartitions != 0); ++attempt) {
         of_subdomain = run(0);
-        if (is_new) is_stored_for_it = stored() != earlier;
-        unchanged = last_.repartitions == 0 ? unchanged + 1 : 0;
+        for (int unchanged = 0, i = 0; unchanged < 10 && i < 5000; ++i) {
+            const bool is_new = last_.repartitions != 0;
+            earlier = stored();
+            of_subdomain = run(0);
+            if (is_new) is_stored_for_it = stored() != earlier;
+            unchanged = last_.repartitions == 0 ? unchanged + 1 : 0;
+        }
+        earlier = stored();
+        with_ghosts = run(1);
     }
-    const auto earlier = stored();
-    EXPECT_EQ(run(1) > of_subdomain, job->rank() + 1 < job->size());
+    EXPECT_EQ(with_ghosts > of_subdomain, job->rank() + 1 < job->size());
     EXPECT_TRUE(!is_stored_for_it || stored() == earlier);
 }
 
