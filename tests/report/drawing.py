@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
 # test: cost=10
-"""The Python package, from its wheel alone: it reads the values of tandem
-export --csv from the committed records, and its comparisons equal tandem compare. Figures name the best
-cells, and bad files give one line."""
+"""Figures of the Python package, from its wheel alone: they name the best cells, and mark cells that cannot be
+told apart."""
 
 import dataclasses
 import json
