@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 # test: cost=8
-"""Reading records for comparison, labels of cells, verdicts, and the rates of
-false and missed changes in synthetic records."""
+"""Reading records for comparison, labels of cells, and verdicts."""
 
 import json
 import pathlib

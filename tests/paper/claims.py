@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: MIT
 # test: cost=15
-"""Verdicts of 'tandem paper': every declared rule gives all of its verdicts
-with made-up records, a disturbed machine and one sample settle nothing, small scenes judge no claim about
-size, and digests count where they compare something. Numbers of the committed page equal those that pandas
-computes from its records."""
+"""Verdicts of 'tandem paper': every declared rule gives all of its verdicts with made-up records, a disturbed
+machine and one sample settle nothing, small scenes judge no claim about size, and digests count where they
+compare something."""
 
 import json
 import math

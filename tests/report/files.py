@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
 # test: cost=7 full=50
-"""Content of a page about records, from the package python/tandem/report
-alone: interrupted cells, damaged records, missing libraries, escaping of all text, and the export of its
-scene."""
+"""Content of a page about records, from the package python/tandem/report alone: interrupted cells, damaged
+records, missing libraries, and escaping of all text."""
 
 import copy
 import json

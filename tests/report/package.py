@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
 # test: cost=12 full=50
-"""The Python package, from its wheel alone: it reads the values of tandem
-export --csv from the committed records, and its comparisons equal tandem compare. Figures name the best
-cells, and bad files give one line."""
+"""The Python package, from its wheel alone: it reads the values of tandem export --csv from the committed
+records, its comparisons equal tandem compare, and bad files give one line."""
 
 import csv
 import io
