@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // tandem algorithms: lists all algorithms in short, or explains the named ones at length.
 #include "algorithms/traversal.h"
-#include "harness/commands/commands.h"
+#include "harness/commands/listings.h"
 #include "base/standard_streams.h"
 #include "base/text_lines.h"
 

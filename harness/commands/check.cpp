@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // tandem check: compares every algorithm on every device with the reference, and counts the pairs of the
 // exact truth that it misses.
-#include "harness/commands/commands.h"
-#include "harness/sampling/interrupt.h"
-#include "harness/plans/cache_folder.h"
+#include "harness/commands/check.h"
+#include "harness/measuring/measure.h"
+#include "harness/program/interrupt.h"
+#include "harness/program/cache_folder.h"
 #include "harness/plans/cell_filter.h"
 #include "harness/plans/inputs.h"
-#include "harness/plans/job.h"
+#include "harness/plans/task.h"
 #include "harness/record/answer.h"
 #include "base/standard_streams.h"
 #include "base/error.h"
@@ -24,10 +25,10 @@ namespace {
 
 /// Checks every cell and calls `print` for each that finished. Stops when a record cannot be written. Returns
 /// the exit code, also after an interrupt.
-int check_cells(const Job& job, const RunOptions& options, RecordFile& file, const Progress& progress,
+int check_cells(const Task& task, const RunOptions& options, RecordFile& file, const Progress& progress,
                 const std::function<void(const Cell&, const Measurement&)>& print) {
-    References references(job.scene, job.range);
-    Truths truths(job.scene, job.range, options.truth, options.truth_contacts);
+    References references(task.scene, task.range);
+    Truths truths(task.scene, task.range, options.truth, options.truth_contacts);
     Measuring measuring;
     measuring.check.truths = options.truth == TruthAmount::none ? nullptr : &truths;
     measuring.stopping.repeat = 0;
@@ -38,7 +39,7 @@ int check_cells(const Job& job, const RunOptions& options, RecordFile& file, con
         code = std::max({code, result.code, misses_against_its_promise(m) ? 1 : 0});
         if (result.measured) print(*result.cell, m);
     };
-    const bool interrupted = measure_cells(job, job.cells, references, measuring, file, {progress, ended});
+    const bool interrupted = measure_cells(task, task.cells, references, measuring, file, {progress, ended});
     return interrupted && !file.failed() ? Interrupt::exit_code() : code;
 }
 
@@ -71,13 +72,13 @@ void print_family_header() {
 
 /// Checks one family of hard:all and prints one line. Pairs that cells miss are counted apart for
 /// rounding=safe and for the other roundings.
-int check_family(const Job& job, const RunOptions& options, RecordFile& file, const Progress& progress) {
+int check_family(const Task& task, const RunOptions& options, RecordFile& file, const Progress& progress) {
     std::uint64_t wrong = 0;
     std::uint64_t missed_safe = 0;
     std::uint64_t missed_other = 0;
     std::uint64_t lost = 0; // the most of a cell
     PairErrors errors;
-    const int code = check_cells(job, options, file, progress, [&](const Cell&, const Measurement& m) {
+    const int code = check_cells(task, options, file, progress, [&](const Cell&, const Measurement& m) {
         wrong += m.agreement.ok() ? 0 : 1;
         if (!m.errors) return;
         errors = m.errors->pairs;
@@ -86,10 +87,10 @@ int check_family(const Job& job, const RunOptions& options, RecordFile& file, co
         if (m.errors->rounding) lost = std::max(lost, m.errors->rounding->lost);
     });
     if (Interrupt::asked()) return code;
-    const auto& flaws = job.range.flaws();
-    put("{:<26} {:>6} {:>9} {:>11} {:>12} {:>13} {:>6} {:>6} {:>6}{}\n", job.scene.name, job.range.size(),
+    const auto& flaws = task.range.flaws();
+    put("{:<26} {:>6} {:>9} {:>11} {:>12} {:>13} {:>6} {:>6} {:>6}{}\n", task.scene.name, task.range.size(),
         errors.touching + errors.missed_touching, errors.overlapping + errors.missed_overlapping, missed_safe,
-        missed_other, lost, job.cells.size(), wrong,
+        missed_other, lost, task.cells.size(), wrong,
         flaws.any() && flaws.handling == Degenerate::skip
             ? fmt::format("  skipped: {}", flaws.degenerate + flaws.non_finite)
             : "");
@@ -101,7 +102,7 @@ int check_refusal(RunOptions options, const std::vector<Cell>& cells) {
     options.degenerate = Degenerate::flat;
     std::string refusal;
     try {
-        open_job(options, cells);
+        open_task(options, cells);
     } catch (const InputError& error) {
         refusal = error.what();
         if (refusal.find("not finite") == std::string::npos) throw; // refused for another reason
@@ -125,7 +126,7 @@ int check_hard(const RunOptions& options, const std::vector<Cell>& cells,
             code = std::max(code, check_refusal(one, cells));
             one.degenerate = Degenerate::skip;
         }
-        code = std::max(code, check_family(open_job(one, cells), one, file, progress));
+        code = std::max(code, check_family(open_task(one, cells), one, file, progress));
         if (file.failed() || Interrupt::asked()) return code;
     }
     put("{}\n", code == 0
@@ -196,14 +197,14 @@ int check_command(const RunOptions& options) {
     if (scenes.size() > 1)
         return check_hard(options, filtered(with_small_queues(plan(request, devices), request), options),
                           scenes);
-    const auto job = open_job(options, filtered(plan_check(request, devices), options));
+    const auto task = open_task(options, filtered(plan_check(request, devices), options));
     RecordFile file(options.out);
-    print_scene(job);
+    print_scene(task);
     const Progress progress(options.quiet);
     std::size_t broken = 0;
     std::map<std::string, std::size_t> roundings; // cells by what rounding changed
     print_matrix_header();
-    const int code = check_cells(job, options, file, progress, [&](const Cell& cell, const Measurement& m) {
+    const int code = check_cells(task, options, file, progress, [&](const Cell& cell, const Measurement& m) {
         print_matrix_row(cell, m);
         broken += misses_against_its_promise(m) ? 1 : 0;
         if (m.errors && m.errors->rounding) ++roundings[rounding_text(*m.errors->rounding)];

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "harness/profile/ceilings.h"
-#include "harness/commands/commands.h"
+#include "harness/commands/listings.h"
 #include "harness/sampling/conditions.h"
-#include "harness/plans/cache_folder.h"
+#include "harness/program/cache_folder.h"
 #include "harness/plans/inputs.h"
 #include "harness/record/journal.h"
 #include "base/standard_streams.h"

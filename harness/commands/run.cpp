@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: MIT
-#include "harness/commands/commands.h"
+#include "harness/commands/run.h"
+#include "harness/measuring/measure.h"
 
-#include "harness/plans/cache_folder.h"
-#include "harness/plans/choosing/choose.h"
+#include "harness/program/cache_folder.h"
+#include "harness/choosing/choose.h"
 #include "harness/commands/dumps.h"
-#include "harness/record/environment.h"
+#include "harness/program/environment.h"
 #include "harness/record/finished_cells.h"
 #include "harness/plans/inputs.h"
-#include "harness/sampling/interrupt.h"
-#include "harness/plans/job.h"
+#include "harness/program/interrupt.h"
+#include "harness/plans/task.h"
 #include "harness/plans/key.h"
 #include "harness/plans/cell_groups.h"
 #include "base/progress.h"
-#include "harness/sampling/ranks/mpi_environment.h"
-#include "harness/sampling/ranks/run_on_ranks.h"
-#include "harness/sampling/ranks/rank_team.h"
+#include "harness/program/mpi_environment.h"
+#include "harness/program/run_on_ranks.h"
+#include "harness/plans/cell_session.h"
+#include "harness/plans/rank_team.h"
 #include "harness/commands/run_parts.h"
 #include "harness/sampling/replays.h"
 #include "base/standard_streams.h"
@@ -31,19 +33,19 @@ namespace {
 
 /// Writes the dumps in a separate replay, because writing files takes longer than running frames. Throws
 /// Interrupted.
-void dump(const Cell& cell, const Job& job, DumpFile& pairs, DumpFile& contacts) {
-    if (job.options.dump_pairs.empty() && job.options.dump_contacts.empty()) return;
-    const auto session = prepare_session(cell, job.scene);
-    for (std::size_t i = 0; i < job.range.size(); ++i) {
+void dump(const Cell& cell, const Task& task, DumpFile& pairs, DumpFile& contacts) {
+    if (task.options.dump_pairs.empty() && task.options.dump_contacts.empty()) return;
+    const auto session = prepare_session(cell, task.scene);
+    for (std::size_t i = 0; i < task.range.size(); ++i) {
         if (decided(cell.team, Interrupt::asked())) throw Interrupted();
-        const auto state = job.range.state(i, session->settings()[parameters::motion]);
+        const auto state = task.range.state(i, session->settings()[parameters::motion]);
         const auto result = session->run(FrameView(state.input()).checked());
         // Collective: all ranks download; only rank 0 writes.
-        if (!job.options.dump_pairs.empty())
-            if (const auto found = result.download(); pairs) pairs.pairs(job.range.first() + i, found);
-        if (!job.options.dump_contacts.empty())
+        if (!task.options.dump_pairs.empty())
+            if (const auto found = result.download(); pairs) pairs.pairs(task.range.first() + i, found);
+        if (!task.options.dump_contacts.empty())
             if (const auto found = result.download_contacts(); contacts)
-                contacts.contacts(job.range.first() + i, found);
+                contacts.contacts(task.range.first() + i, found);
     }
     pairs.finish();
     contacts.finish();
@@ -51,9 +53,9 @@ void dump(const Cell& cell, const Job& job, DumpFile& pairs, DumpFile& contacts)
 
 /// Replays the frames and does nothing else, so that a profiler records only the algorithm. Profiling starts
 /// after a first replay, which compiles kernels and grows buffers. Throws Interrupted.
-int profile(const Job& job, std::size_t times) {
-    for (const auto& cell : job.cells) {
-        Replays replays(cell, job.scene, job.range,
+int profile(const Task& task, std::size_t times) {
+    for (const auto& cell : task.cells) {
+        Replays replays(cell, task.scene, task.range,
                         [&cell] { return decided(cell.team, Interrupt::asked()); });
         const auto replay = [&] { replays.timed([](std::size_t, const FrameResult&) {}); };
         replay();
@@ -61,32 +63,32 @@ int profile(const Job& job, std::size_t times) {
         for (std::size_t i = 0; i < times; ++i) replay();
         for (auto* device : cell.devices) device->profile(false);
         put("{}: replayed frames {}:{} {} times; nothing measured or recorded\n", describe(cell),
-            job.range.first(), job.range.last(), times);
+            task.range.first(), task.range.last(), times);
     }
     return 0;
 }
 
 /// Chooses the algorithm and settings of each `auto` cell. Throws Interrupted.
-void choose_cells(Job& job, const RunOptions& options, const Progress& progress) {
+void choose_cells(Task& task, const RunOptions& options, const Progress& progress) {
     ChoosingOptions choosing;
     choosing.seconds = options.choose_seconds;
     choosing.afresh = options.choose_afresh;
     choosing.stop = Interrupt::asked;
-    for (std::size_t i = 0; i < job.cells.size(); ++i) {
+    for (std::size_t i = 0; i < task.cells.size(); ++i) {
         choosing.progress = [&](std::string_view text) {
             if (text.empty())
                 progress.clear();
             else
-                progress.show(fmt::format("{}/{} {}", i + 1, job.cells.size(), text));
+                progress.show(fmt::format("{}/{} {}", i + 1, task.cells.size(), text));
         };
-        choose(job.cells[i], job.scene, job.range, choosing);
+        choose(task.cells[i], task.scene, task.range, choosing);
     }
 }
 
-/// The keys of the cells of a job, in order.
-std::string keys_of(const Job& job) {
+/// The keys of the cells of a task, in order.
+std::string keys_of(const Task& task) {
     std::string keys;
-    for (const auto& cell : job.cells) keys += key_of(cell, cell.settings, job.scene, job.range) + "\n";
+    for (const auto& cell : task.cells) keys += key_of(cell, cell.settings, task.scene, task.range) + "\n";
     return keys;
 }
 
@@ -106,15 +108,15 @@ public:
 
 private:
     void check_one_group() const;
-    std::unique_ptr<Job> open(const CellGroup& group, const Unfit& unfit) const;
+    std::unique_ptr<Task> open(const CellGroup& group, const Unfit& unfit) const;
     void open_files();
-    int work_on(Job& job);
-    int measure(Job& job);
-    void conclude(const Job& job, const std::map<const Cell*, CellResult>& results);
+    int work_on(Task& task);
+    int measure(Task& task);
+    void conclude(const Task& task, const std::map<const Cell*, CellResult>& results);
     int end(int code);
-    void leave_out_finished(Job& job);
+    void leave_out_finished(Task& task);
     int list_all();
-    void list(const Job& job);
+    void list(const Task& task);
 
     void open_team();
     bool must_stop() const;
@@ -197,36 +199,36 @@ void Run::open_files() {
 /// Whether there was an interrupt, or the record file cannot be written.
 bool Run::must_stop() const { return decided(team_, interrupted_ || file_->failed()); }
 
-void Run::leave_out_finished(Job& job) {
-    left_out_ += std::erase_if(job.cells, [&](const Cell& cell) {
+void Run::leave_out_finished(Task& task) {
+    left_out_ += std::erase_if(task.cells, [&](const Cell& cell) {
         if (!cell.candidates.empty()) return false;
-        if (!decided(team_, finished_.has(cell, job.scene, job.range))) return false;
-        unfinished_.forget(key_of(cell, cell.settings, job.scene, job.range));
+        if (!decided(team_, finished_.has(cell, task.scene, task.range))) return false;
+        unfinished_.forget(key_of(cell, cell.settings, task.scene, task.range));
         return true;
     });
 }
 
 /// Lists the cells with the keys of their records, and estimates their time: the earlier time where known,
 /// else --seconds.
-void Run::list(const Job& job) {
-    for (const auto& cell : job.cells) {
-        const auto known = finished_.seconds(cell, job.scene, job.range);
+void Run::list(const Task& task) {
+    for (const auto& cell : task.cells) {
+        const auto known = finished_.seconds(cell, task.scene, task.range);
         if (!known && options_.repeat) ++unknown_;
         seconds_ += known ? *known : (options_.repeat ? 0 : options_.seconds);
         put("{:>5}  {}\n       {}\n", ++listed_, describe(cell),
-            cell.candidates.empty() ? key_of(cell, session_settings(cell, job.scene), job.scene, job.range)
+            cell.candidates.empty() ? key_of(cell, session_settings(cell, task.scene), task.scene, task.range)
                                     : "its key is that of the choice");
     }
 }
 
-int Run::measure(Job& job) {
-    Truths truths(job.scene, job.range, options_.truth, options_.truth_contacts, checks_folder(options_));
+int Run::measure(Task& task) {
+    Truths truths(task.scene, task.range, options_.truth, options_.truth_contacts, checks_folder(options_));
     auto measuring = measuring_of(options_);
     if (options_.truth != TruthAmount::none) measuring.check.truths = &truths;
     measuring.unfinished = &unfinished_;
     measuring.stop = Interrupt::asked;
     measuring.seed = decided(team_, measuring.seed);
-    References references(job.scene, job.range, checks_folder(options_));
+    References references(task.scene, task.range, checks_folder(options_));
     std::map<const Cell*, CellResult> results;
     int code = 0;
     const auto ended = [&](const CellResult& result) {
@@ -234,38 +236,38 @@ int Run::measure(Job& job) {
         results.emplace(result.cell, result);
     };
     interrupted_ =
-        measure_cells(job, job.cells, references, measuring, *file_, {progress_, ended, later_cells_});
+        measure_cells(task, task.cells, references, measuring, *file_, {progress_, ended, later_cells_});
     measured_ += results.size();
-    conclude(job, results);
+    conclude(task, results);
     if (interrupted_) return code;
     // Dumps come last, because a dump that cannot be written ends the run.
-    for (const auto& cell : job.cells)
+    for (const auto& cell : task.cells)
         if (const auto found = results.find(&cell); found != results.end() && found->second.measured) {
             const bool continues = !decided(team_, file_->failed());
             if (continues) try {
-                    dump(cell, job, *pairs_, *contacts_);
+                    dump(cell, task, *pairs_, *contacts_);
                 } catch (const Interrupted&) {
                     interrupted_ = dump_ended_ = true;
                     return code;
                 }
-            if (continues && !options_.trace.empty()) trace_->write(trace_frame(cell, job));
+            if (continues && !options_.trace.empty()) trace_->write(trace_frame(cell, task));
             break;
         }
     return code;
 }
 
 /// Prints the results and records the verdicts on them.
-void Run::conclude(const Job& job, const std::map<const Cell*, CellResult>& results) {
+void Run::conclude(const Task& task, const std::map<const Cell*, CellResult>& results) {
     std::vector<const CellResult*> in_order;
-    for (const auto& cell : job.cells)
+    for (const auto& cell : task.cells)
         if (const auto found = results.find(&cell); found != results.end())
             in_order.push_back(&found->second);
-    const auto rows = rows_of(job, in_order);
+    const auto rows = rows_of(task, in_order);
     const auto verdicts = verdicts_of(rows);
-    print_results(rows, verdicts, job, in_order);
+    print_results(rows, verdicts, task, in_order);
     if (interrupted_ || file_->failed() || !is_first(team_)) return;
     for (const auto& verdict : verdicts)
-        verdicts_ += file_->append_or_report(verdict_record(verdict, rows, job.scene, job.range)) ? 1 : 0;
+        verdicts_ += file_->append_or_report(verdict_record(verdict, rows, task.scene, task.range)) ? 1 : 0;
 }
 
 /// Prints the last messages and returns the exit code.
@@ -289,24 +291,24 @@ int Run::end(int code) {
     return Interrupt::exit_code();
 }
 
-std::unique_ptr<Job> Run::open(const CellGroup& group, const Unfit& unfit) const {
+std::unique_ptr<Task> Run::open(const CellGroup& group, const Unfit& unfit) const {
     auto own = options_;
     own.scene = group.scene;
     own.frames = group.frames;
     const bool skips = options_.plan && options_.plan->skips_impossible;
-    std::unique_ptr<Job> job;
+    std::unique_ptr<Task> task;
     together(team_, [&] {
-        job = std::make_unique<Job>(open_scene(own), own, group.cells, skips ? unfit : Unfit(refuse));
+        task = std::make_unique<Task>(open_scene(own), own, group.cells, skips ? unfit : Unfit(refuse));
     });
-    if (team_ != nullptr) team_->check_same(keys_of(*job));
-    return job;
+    if (team_ != nullptr) team_->check_same(keys_of(*task));
+    return task;
 }
 
 /// Measures the cells of a group, or replays them for a profiler. Returns the exit code.
-int Run::work_on(Job& job) {
+int Run::work_on(Task& task) {
     try {
-        choose_cells(job, options_, progress_);
-        return options_.profile > 0 ? profile(job, options_.profile) : measure(job);
+        choose_cells(task, options_, progress_);
+        return options_.profile > 0 ? profile(task, options_.profile) : measure(task);
     } catch (const Interrupted&) {
         interrupted_ = true;
         return 0;
@@ -325,12 +327,12 @@ int Run::go() {
     for (const auto& group : all_.groups) later_cells_ += group.cells.size();
     for (const auto& group : all_.groups) {
         later_cells_ -= group.cells.size();
-        const auto job = open(group, print_skipped);
+        const auto task = open(group, print_skipped);
         open_files();
-        leave_out_finished(*job);
-        if (job->cells.empty()) continue;
-        print_scene(*job);
-        code = std::max(code, work_on(*job));
+        leave_out_finished(*task);
+        if (task->cells.empty()) continue;
+        print_scene(*task);
+        code = std::max(code, work_on(*task));
         if (must_stop()) break;
     }
     return decided(team_, end(code));
@@ -340,11 +342,11 @@ int Run::go() {
 int Run::list_all() {
     std::size_t unopened = 0;
     for (const auto& group : all_.groups) try {
-            const auto job = open(group, print_skipped);
+            const auto task = open(group, print_skipped);
             open_files();
-            leave_out_finished(*job);
-            print_scene(*job);
-            list(*job);
+            leave_out_finished(*task);
+            print_scene(*task);
+            list(*task);
         } catch (const InputError& error) {
             if (all_.groups.size() == 1) throw;
             print_message("tandem: {} cells cannot be listed: {}\n", group.cells.size(), error.what());

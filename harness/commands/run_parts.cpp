@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "harness/commands/run_parts.h"
+#include "harness/measuring/measure.h"
 
 #include "base/standard_streams.h"
 #include "harness/plans/key.h"
 #include "harness/record/table/table.h"
-#include "harness/sampling/interrupt.h"
+#include "harness/program/interrupt.h"
 #include "harness/sampling/turns.h"
 #include "harness/record/answer.h"
 
@@ -33,27 +34,27 @@ Measuring measuring_of(const RunOptions& options) {
     return measuring;
 }
 
-std::vector<Row> rows_of(const Job& job, std::span<const CellResult* const> results) {
+std::vector<Row> rows_of(const Task& task, std::span<const CellResult* const> results) {
     std::vector<Row> rows;
     for (const auto* result : results)
         if (const auto& m = result->measurement; result->measured)
-            rows.push_back({result->cell, &m, key_of(*result->cell, m.settings, job.scene, job.range)});
+            rows.push_back({result->cell, &m, key_of(*result->cell, m.settings, task.scene, task.range)});
     return rows;
 }
 
-void print_results(std::span<const Row> rows, const std::vector<Verdict>& verdicts, const Job& job,
+void print_results(std::span<const Row> rows, const std::vector<Verdict>& verdicts, const Task& task,
                    std::span<const CellResult* const> results) {
     if (rows.empty()) return;
-    const bool is_text = job.options.format == TableFormat::text;
+    const bool is_text = task.options.format == TableFormat::text;
     put_text("\n"
-             + result_tables(rows, verdicts, job.scene,
-                             {job.options.format, is_text && prints_colour(), job.options.columns})
+             + result_tables(rows, verdicts, task.scene,
+                             {task.options.format, is_text && prints_colour(), task.options.columns})
              + "\n");
     for (const auto* result : results) {
         if (!result->measured) continue;
         const auto doubt = doubts(*result);
         put("{}: {}\n", describe(*result->cell), answer_text(result->measurement));
-        for (const auto& line : answer_warnings(result->measurement, job.scene)) put("  {}\n", line);
+        for (const auto& line : answer_warnings(result->measurement, task.scene)) put("  {}\n", line);
         if (!doubt.empty()) put("  {}\n", doubt);
     }
 }

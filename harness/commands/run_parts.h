@@ -2,7 +2,7 @@
 // Parts of `tandem run`.
 #pragma once
 
-#include "harness/plans/job.h"
+#include "harness/measuring/measure.h"
 #include "harness/plans/cell_groups.h"
 #include "harness/record/verdict.h"
 
@@ -16,11 +16,11 @@ void print_left_out(const CellGroups& all);
 void print_skipped(const InputError& error);
 
 /// The measured cells among the results, in order.
-std::vector<Row> rows_of(const Job& job, std::span<const CellResult* const> results);
+std::vector<Row> rows_of(const Task& task, std::span<const CellResult* const> results);
 
 /// Prints the tables of the rows with their verdicts, and for each measured result whether its answer is
 /// right.
-void print_results(std::span<const Row> rows, const std::vector<Verdict>& verdicts, const Job& job,
+void print_results(std::span<const Row> rows, const std::vector<Verdict>& verdicts, const Task& task,
                    std::span<const CellResult* const> results);
 
 } // namespace tandem

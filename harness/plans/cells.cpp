@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/plans/cells.h"
 
-#include "harness/plans/choosing/candidates.h"
+#include "harness/plans/candidates.h"
 #include "base/error.h"
 
 #include <algorithm>

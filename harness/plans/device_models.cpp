@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/plans/device_models.h"
 
-#include "harness/sampling/processor_name.h"
+#include "harness/program/processor_name.h"
 
 #include <algorithm>
 #include <cctype>

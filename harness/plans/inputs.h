@@ -2,12 +2,12 @@
 #pragma once
 
 #include "harness/plans/run_options.h"
-#include "harness/plans/frames.h"
+#include "harness/frames/frames.h"
 
 namespace tandem {
 
 /// Prints what readers found in the meshes of a scene: one line a mesh file, on standard error. For commands
-/// that open a scene for a user; print_scene() (job.h) calls it.
+/// that open a scene for a user; print_scene() (task.h) calls it.
 void report_findings(const Scene& scene);
 
 /// Opens the scene of the options: a kind, a description, or mesh files with poses. Throws InputError.

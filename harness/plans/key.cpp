@@ -2,7 +2,7 @@
 #include "harness/plans/key.h"
 
 #include "harness/plans/device_models.h"
-#include "harness/sampling/ranks/rank_team.h"
+#include "harness/plans/cell_session.h"
 
 #include <algorithm>
 #include <array>

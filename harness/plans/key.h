@@ -2,7 +2,7 @@
 #pragma once
 
 #include "harness/plans/device_models.h"
-#include "harness/plans/frames.h"
+#include "harness/frames/frames.h"
 #include "harness/plans/cells.h"
 
 namespace tandem {

@@ -3,9 +3,9 @@
 
 #include "harness/plans/plan_file.h"
 #include "harness/plans/shard.h"
-#include "harness/record/table/columns.h"
+#include "base/columns.h"
 #include "harness/verify/accuracy/truths.h"
-#include "harness/verify/flaws.h"
+#include "harness/frames/flaws.h"
 
 #include <cstdint>
 #include <optional>

@@ -5,7 +5,7 @@
 #include "algorithms/bounds/geometry.h"
 #include "algorithms/kernels/sources.h"
 #include "harness/record/record.h"
-#include "harness/sampling/statistics.h"
+#include "base/statistics.h"
 
 #include <algorithm>
 #include <chrono>

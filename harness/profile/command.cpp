@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: MIT
 // `tandem profile`.
+#include "harness/plans/cell_session.h"
+#include "harness/record/record.h"
+#include "harness/record/journal.h"
+#include "harness/sampling/rounds.h"
+#include "base/progress.h"
 #include "harness/profile/ceilings.h"
-#include "harness/commands/commands.h"
-#include "harness/plans/cache_folder.h"
+#include "harness/profile/command.h"
+#include "harness/program/cache_folder.h"
 #include "harness/plans/cell_filter.h"
 #include "harness/plans/inputs.h"
-#include "harness/sampling/interrupt.h"
-#include "harness/plans/job.h"
+#include "harness/program/interrupt.h"
+#include "harness/plans/task.h"
 #include "harness/profile/output.h"
 #include "harness/sampling/local_sampler.h"
 #include "base/standard_streams.h"
@@ -28,20 +33,20 @@ constexpr std::uint64_t most_examined_pairs = std::uint64_t{1} << 27;
 
 /// Counts the data that the candidate pairs of the mean frame touch, in a separate replay. After a signal it
 /// counts none, so that the bounds are lower.
-void count_touched(profile::Profile& profile, const Cell& cell, const Job& job, const Measurement& m) {
+void count_touched(profile::Profile& profile, const Cell& cell, const Task& task, const Measurement& m) {
     if (Interrupt::asked() || m.candidate_pairs.empty() || !has_pairs(m.settings[parameters::output])
         || *std::ranges::max_element(m.candidate_pairs) > most_examined_pairs)
         return;
     auto& facts = profile.facts;
     try {
-        Replays replays(cell, job.scene, job.range, Interrupt::asked);
+        Replays replays(cell, task.scene, task.range, Interrupt::asked);
         replays.timed([&](std::size_t, const FrameResult& result) {
-            add_touched(facts, job.scene, m.settings, result.download());
+            add_touched(facts, task.scene, m.settings, result.download());
         });
     } catch (const Interrupted&) {
         facts.touched = facts.touched_rows = facts.touched_vertices = 0;
     }
-    const auto frames = static_cast<double>(job.range.size());
+    const auto frames = static_cast<double>(task.range.size());
     for (auto* sum : {&facts.touched, &facts.touched_rows, &facts.touched_vertices}) *sum /= frames;
 }
 
@@ -54,7 +59,7 @@ nlohmann::ordered_json measured_ceilings(Device& device) {
     return record;
 }
 
-/// Profiles every cell of a job.
+/// Profiles every cell of a task.
 class Profiling {
 public:
     explicit Profiling(const ProfileOptions& options);
@@ -69,7 +74,7 @@ private:
     const ProfileOptions& options_;
     const RunOptions& run_;
     std::vector<BackendReport> backends_;
-    std::optional<Job> job_;
+    std::optional<Task> task_;
     Progress progress_;
     std::map<const Device*, nlohmann::ordered_json> ceilings_;
     std::optional<RecordFile> file_;
@@ -91,15 +96,15 @@ Profiling::Profiling(const ProfileOptions& options)
         if (cell.devices.size() > 1)
             throw InputError(
                 fmt::format("{}: a profile needs one device; name devices separately, D,E", describe(cell)));
-    job_.emplace(open_scene(run_), run_, std::move(cells));
+    task_.emplace(open_scene(run_), run_, std::move(cells));
 }
 
 /// Throws the error of the first cell when no cell can be prepared, as with a capacity that exceeds the
 /// memory: measuring ceilings takes a minute on a processor.
 void Profiling::refuse_unpreparable() const {
     std::optional<DeviceError> first;
-    for (const auto& cell : job_->cells) try {
-            prepare_session(cell, job_->scene);
+    for (const auto& cell : task_->cells) try {
+            prepare_session(cell, task_->scene);
             return;
         } catch (const DeviceError& error) {
             if (!first) first = error;
@@ -109,7 +114,7 @@ void Profiling::refuse_unpreparable() const {
 
 /// Called before cells are measured, so that a file without ceilings is reported early.
 void Profiling::find_ceilings() {
-    for (const auto& cell : job_->cells) {
+    for (const auto& cell : task_->cells) {
         auto* device = cell.devices.front();
         if (ceilings_.contains(device)) continue;
         progress_.show(fmt::format("ceilings of {}", device->info().id));
@@ -148,15 +153,15 @@ void Profiling::end(const Outcome& outcome, const Sampling& sampling) {
     profile.ceilings = &ceilings;
     profile.ceilings_from = options_.ceilings.empty() ? "measured" : options_.ceilings;
     profile.limits = profile::limits_of(ceilings, static_cast<int>(settings[parameters::k]));
-    profile.facts = profile::mean_frame(m);
+    profile.facts = mean_frame(m);
     if (measured && !m.breakdowns.empty()) {
-        count_touched(profile, cell, *job_, m);
+        count_touched(profile, cell, *task_, m);
         profile.kernels =
-            profile_kernels(m, profile.facts, cell.algorithm->costs(job_->scene, settings), profile.limits);
+            profile_kernels(m, profile.facts, cell.algorithm->costs(task_->scene, settings), profile.limits);
         print(cell, m, profile);
         if (traced_ == nullptr) traced_ = &cell;
     }
-    const auto record = make_record(cell, job_->scene, job_->range, m, outcome, sampling);
+    const auto record = make_record(cell, task_->scene, task_->range, m, outcome, sampling);
     const bool recorded = file_->append_or_report(profile_record(record, profile));
     code_ = std::max(code_, !measured || !recorded ? 3 : (m.agreement.ok() ? 0 : 1));
 }
@@ -164,16 +169,16 @@ void Profiling::end(const Outcome& outcome, const Sampling& sampling) {
 int Profiling::go() {
     file_.emplace(run_.out);
     trace_.emplace(run_.trace);
-    print_scene(*job_);
+    print_scene(*task_);
     refuse_unpreparable();
     report_cache_folder();
     find_ceilings();
     const Interrupt interrupt(Interrupt::stopping);
-    References references(job_->scene, job_->range, checks_folder(run_));
+    References references(task_->scene, task_->range, checks_folder(run_));
     std::deque<LocalSampler> samplers;
     std::vector<CellSampler*> group;
-    for (const auto& cell : job_->cells)
-        group.push_back(&samplers.emplace_back(cell, job_->scene, job_->range, references));
+    for (const auto& cell : task_->cells)
+        group.push_back(&samplers.emplace_back(cell, task_->scene, task_->range, references));
     RoundsListener listener;
     listener.progress = [&](std::string_view text, std::optional<double> left) {
         progress_.show(text, left);
@@ -184,7 +189,7 @@ int Profiling::go() {
     const bool interrupted = sample_group(group, check, {run_.repeat, run_.noise, run_.seconds},
                                           run_.seed ? *run_.seed : std::random_device{}(), listener);
     if (traced_ != nullptr && *trace_ && !file_->failed() && !interrupted)
-        trace_->write(trace_frame(*traced_, *job_));
+        trace_->write(trace_frame(*traced_, *task_));
     if (traced_ != nullptr) put_text("\n" + profile::profile_legend());
     if (!run_.out.empty()) put("{} records appended to {}\n", file_->appended(), run_.out);
     return interrupted && !file_->failed() ? Interrupt::exit_code() : code_;

@@ -3,16 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <set>
 
 namespace tandem::profile {
 
 namespace {
-
-double mean(const std::vector<std::uint64_t>& values) {
-    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
 
 /// A term of the floor; none when the amount or the ceiling is unknown.
 std::optional<double> nanoseconds(std::optional<double> amount, double per_second) {
@@ -110,17 +105,6 @@ std::vector<KernelProfile> profile_kernels(const Measurement& m, const FrameFact
     for (auto& kernel : kernels) kernel.time_fraction = sum > 0 ? kernel.ns.median / sum : 0;
     std::ranges::stable_sort(kernels, std::ranges::greater{}, [](const auto& k) { return k.ns.median; });
     return kernels;
-}
-
-FrameFacts mean_frame(const Measurement& m) {
-    FrameFacts facts;
-    if (m.candidate_pairs.empty()) return facts;
-    facts.body_pairs = mean(m.body_pairs);
-    facts.candidate_pairs = mean(m.candidate_pairs);
-    facts.contacts = mean(m.contacts);
-    for (const auto& [counter, count] : m.work)
-        facts.work[counter] = static_cast<double>(count) / static_cast<double>(m.candidate_pairs.size());
-    return facts;
 }
 
 } // namespace tandem::profile

@@ -5,7 +5,7 @@
 #include "algorithms/bodies/cost.h"
 #include "harness/profile/limits.h"
 #include "harness/sampling/measurement.h"
-#include "harness/sampling/statistics.h"
+#include "base/statistics.h"
 
 #include <optional>
 #include <string_view>
@@ -57,8 +57,5 @@ private:
 /// The kernels of all instrumented replays, the longest first.
 std::vector<KernelProfile> profile_kernels(const Measurement& measurement, const FrameFacts& facts,
                                            std::span<const KernelCost> costs, const Limits& limits);
-
-/// The mean frame of the measurement. The caller adds the data that its pairs touch.
-FrameFacts mean_frame(const Measurement& measurement);
 
 } // namespace tandem::profile

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "harness/profile/output.h"
-#include "harness/record/table/columns.h"
+#include "base/columns.h"
 #include "base/standard_streams.h"
 #include "base/text_lines.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/record/answer.h"
 
-#include "harness/sampling/statistics.h"
+#include "base/statistics.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -54,25 +54,10 @@ std::vector<std::string> answer_warnings(const Measurement& m, const Scene& scen
     return lines;
 }
 
-std::string doubts(const CellResult& result) {
-    const auto& m = result.measurement;
-    std::vector<std::string> notes;
-    std::map<std::string, std::size_t> reasons;
-    std::size_t disturbed = 0;
-    for (const auto& round : m.conditions)
-        if (const auto reason = round.disturbed()) ++disturbed, ++reasons[*reason];
-    if (disturbed > 0) {
-        const auto most =
-            std::ranges::max_element(reasons, {}, [](const auto& entry) { return entry.second; });
-        notes.push_back(
-            fmt::format("{} of {} rounds disturbed ({})", disturbed, m.conditions.size(), most->first));
-    }
-    if (!result.converged) notes.emplace_back("interval wider than asked for");
-    const auto rounds = round_medians(m.totals(), m.rounds());
-    if (const auto outliers = count_outliers(rounds); outliers > 0)
-        notes.push_back(fmt::format("{} outlier{}", outliers, outliers == 1 ? "" : "s"));
-    if (const auto change = drift(rounds)) notes.push_back(fmt::format("drift {:+.1f} %", *change * 100));
-    return fmt::to_string(fmt::join(notes, "; "));
+bool misses_against_its_promise(const Measurement& m) {
+    const auto rounding = m.settings[parameters::rounding];
+    return m.errors && m.errors->missed() > 0
+           && (rounding == Rounding::safe || rounding == Rounding::directed);
 }
 
 } // namespace tandem

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "harness/plans/job.h"
+#include "harness/sampling/measurement.h"
 
 #include <string>
 #include <vector>
@@ -17,7 +17,8 @@ std::string rounding_text(const RoundingErrors& errors);
 /// A line for each reason not to rely on the answer, although it is the rule's or the precision's own.
 std::vector<std::string> answer_warnings(const Measurement& m, const Scene& scene);
 
-/// Reasons to doubt a cell's times, such as disturbed rounds or drift; empty when there are none.
-std::string doubts(const CellResult& result);
+/// Whether a cell missed pairs although its rounding is safe or directed. These roundings miss no pair that
+/// touches or overlaps (theorems of algorithms/bounds); other roundings guarantee nothing.
+bool misses_against_its_promise(const Measurement& m);
 
 } // namespace tandem

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/record/parts.h"
-#include "harness/sampling/statistics.h"
-#include "harness/verify/flaws.h"
+#include "base/statistics.h"
+#include "harness/frames/flaws.h"
 
 #include <algorithm>
 #include <span>

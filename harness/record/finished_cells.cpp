@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "harness/record/finished_cells.h"
 
-#include "harness/record/environment.h"
-#include "harness/record/field.h"
+#include "harness/program/environment.h"
+#include "harness/fields/field.h"
 #include "harness/plans/key.h"
 #include "harness/record/record.h"
 #include "base/error.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "harness/plans/frames.h"
+#include "harness/frames/frames.h"
 #include "harness/record/journal.h"
 #include "harness/plans/cells.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/record/parts.h"
-#include "harness/sampling/ranks/rank_team.h"
-#include "harness/sampling/statistics.h"
+#include "harness/plans/cell_session.h"
+#include "base/statistics.h"
 
 namespace tandem::record_parts {
 

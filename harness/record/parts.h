@@ -2,8 +2,8 @@
 // The parts of a cell's record: their fields, as record.cpp joins them.
 #pragma once
 
-#include "harness/record/environment.h"
-#include "harness/record/types.h"
+#include "harness/program/environment.h"
+#include "harness/fields/types.h"
 #include "harness/sampling/rounds.h"
 
 namespace tandem::record_parts {
@@ -37,9 +37,6 @@ Fields<CellRecord> sampling_fields();
 Fields<CellRecord> time_fields();
 /// "partition": the work of each of several devices, frame by frame.
 Fields<CellRecord> partition_fields();
-/// Counts of the checking replay, in `work`: what was found, and how much work it took.
-const Fields<Measurement>& found_counts();
-const Fields<Measurement>& effort_counts();
 /// From "work" to "agreement".
 Fields<CellRecord> answer_fields();
 /// "error": errors against the truth, and the flaws of the input.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "harness/record/record.h"
 
-#include "harness/plans/choosing/choice.h"
+#include "harness/choosing/choice.h"
 #include "harness/plans/key.h"
 #include "harness/record/parts.h"
 #include "harness/record/schema.h"
-#include "harness/sampling/ranks/rank_team.h"
+#include "harness/plans/rank_team.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "harness/record/parts.h"
-#include "harness/sampling/statistics.h"
+#include "base/statistics.h"
 
 namespace tandem::record_parts {
 

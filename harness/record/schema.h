@@ -2,7 +2,7 @@
 // The committed files that are made of the declarations of fields.
 #pragma once
 
-#include "harness/record/field.h"
+#include "harness/fields/field.h"
 
 namespace tandem::record_parts {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "harness/record/parts.h"
-#include "harness/sampling/statistics.h"
+#include "base/statistics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,7 +38,7 @@ Fields<Times> statistics_fields() {
         statistic(
             "low",
             "lower end of the 95 % percentile-bootstrap interval of the median, nanoseconds; expanded for "
-            "few rounds (harness/sampling/statistics.h) since commits of 2026-11-23, of ten rounds a sixth "
+            "few rounds (base/statistics.h) since commits of 2026-11-23, of ten rounds a sixth "
             "narrower before",
             &Summary::low),
         statistic("high", "upper end of that interval, nanoseconds", &Summary::high)};

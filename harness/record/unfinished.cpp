@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/record/unfinished.h"
 
-#include "harness/record/environment.h"
+#include "harness/program/environment.h"
 #include "base/standard_streams.h"
 #include "base/error.h"
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "harness/record/verdict.h"
 
-#include "harness/record/environment.h"
+#include "harness/program/environment.h"
 #include "harness/record/record.h"
 #include "harness/record/schema.h"
-#include "harness/record/table/columns.h"
-#include "harness/record/types.h"
-#include "harness/sampling/ranks/rank_team.h"
-#include "harness/sampling/statistics.h"
+#include "base/columns.h"
+#include "harness/fields/types.h"
+#include "harness/plans/cell_session.h"
+#include "base/statistics.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "harness/plans/frames.h"
+#include "harness/frames/frames.h"
 #include "harness/sampling/measurement.h"
 #include "harness/sampling/ratio.h"
 

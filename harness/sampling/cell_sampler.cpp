@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/sampling/cell_sampler.h"
 
-#include "harness/sampling/interrupt.h"
+#include "harness/program/interrupt.h"
 
 #include <algorithm>
 

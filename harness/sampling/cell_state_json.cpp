@@ -2,7 +2,7 @@
 // Converts states of cells to JSON: lists the fields of every structure in a state.
 #include "harness/sampling/cell_state.h"
 
-#include "harness/record/parts.h"
+#include "harness/sampling/measurement_fields.h"
 #include "harness/verify/accuracy/answer_errors_json.h"
 
 namespace tandem {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The fields of conditions in records.
-#include "harness/record/types.h"
+#include "harness/fields/types.h"
 #include "harness/sampling/conditions.h"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "harness/sampling/local_sampler.h"
+#include "harness/plans/rank_team.h"
 
 #include "algorithms/bounds/geometry.h"
 #include "base/memory_reserve.h"

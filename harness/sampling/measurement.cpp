@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "harness/sampling/measurement.h"
 
-#include "harness/sampling/statistics.h"
+#include "base/statistics.h"
 
 #include <algorithm>
 #include <numeric>
 
 namespace tandem {
+
+namespace {
+
+double mean(const std::vector<std::uint64_t>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+} // namespace
 
 std::int64_t since(std::chrono::steady_clock::time_point begin) {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - begin)
@@ -91,6 +99,17 @@ double median_ns(const Measurement& m) {
     for (const auto& replay : m.breakdowns)
         sums.push_back(std::accumulate(replay.frame_ns.begin(), replay.frame_ns.end(), std::int64_t{0}));
     return sums.empty() ? 0 : summarise(sums).median;
+}
+
+FrameFacts mean_frame(const Measurement& m) {
+    FrameFacts facts;
+    if (m.candidate_pairs.empty()) return facts;
+    facts.body_pairs = mean(m.body_pairs);
+    facts.candidate_pairs = mean(m.candidate_pairs);
+    facts.contacts = mean(m.contacts);
+    for (const auto& [counter, count] : m.work)
+        facts.work[counter] = static_cast<double>(count) / static_cast<double>(m.candidate_pairs.size());
+    return facts;
 }
 
 } // namespace tandem

@@ -2,6 +2,7 @@
 // The results of measuring a cell.
 #pragma once
 
+#include "algorithms/bodies/cost.h"
 #include "harness/verify/accuracy/answer_errors.h"
 #include "harness/verify/deep_contact.h"
 #include "harness/verify/flattened.h"
@@ -134,5 +135,8 @@ struct Measurement {
 
 /// Median nanoseconds of a sample; of an instrumented replay for a cell without samples (tandem check).
 double median_ns(const Measurement& m);
+
+/// The mean frame of a measurement. The caller adds the data that its pairs touch.
+FrameFacts mean_frame(const Measurement& m);
 
 } // namespace tandem

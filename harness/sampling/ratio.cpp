@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/sampling/ratio.h"
 
-#include "harness/sampling/statistics.h"
+#include "base/statistics.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "harness/plans/cell_session.h"
+#include "harness/plans/rank_team.h"
 #include "harness/sampling/replays.h"
 
 #include <algorithm>

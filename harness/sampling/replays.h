@@ -2,9 +2,8 @@
 #pragma once
 
 #include "backends/ranges.h"
-#include "harness/plans/frames.h"
-#include "harness/sampling/ranks/rank_team.h"
-#include "harness/sampling/interrupt.h"
+#include "harness/frames/frames.h"
+#include "harness/program/interrupt.h"
 #include "harness/sampling/measurement.h"
 
 #include <functional>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "harness/sampling/rounds.h"
 
-#include "harness/sampling/interrupt.h"
-#include "harness/sampling/ranks/rank_team.h"
-#include "harness/sampling/statistics.h"
+#include "harness/program/interrupt.h"
+#include "harness/plans/rank_team.h"
+#include "base/statistics.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "harness/simulate/pictures.h"
 
-#include "harness/commands/external.h"
+#include "harness/program/external.h"
 #include "base/temporary_directory.h"
-#include "harness/commands/programs.h"
+#include "harness/program/programs.h"
 #include "base/standard_streams.h"
 #include "base/error.h"
 #include "base/files_in_use.h"

@@ -2,7 +2,7 @@
 #include "harness/record/record.h"
 #include "harness/simulate/simulate.h"
 #include "harness/simulate/session.h"
-#include "harness/sampling/statistics.h"
+#include "base/statistics.h"
 #include "scenes/dynamics_settings.h"
 
 #include <algorithm>

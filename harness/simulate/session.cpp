@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/simulate/session.h"
 
-#include "harness/sampling/ranks/rank_team.h"
+#include "harness/plans/cell_session.h"
 #include "base/digest.h"
 #include "scenes/dynamics_settings.h"
 #include "base/error.h"

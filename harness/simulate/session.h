@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "harness/commands/commands.h"
+#include "harness/simulate/command.h"
 #include "harness/record/journal.h"
 #include "scenes/recording/writer.h"
 #include "scenes/simulate/simulation.h"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "harness/simulate/simulate.h"
 
-#include "harness/commands/commands.h"
+#include "harness/simulate/command.h"
 #include "harness/plans/inputs.h"
-#include "harness/record/environment.h"
+#include "harness/program/environment.h"
 #include "harness/record/journal.h"
-#include "harness/sampling/interrupt.h"
+#include "harness/program/interrupt.h"
 #include "base/memory_reserve.h"
 #include "harness/simulate/pictures.h"
 #include "base/progress.h"

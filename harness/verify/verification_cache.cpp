@@ -2,7 +2,7 @@
 #include "harness/verify/verification_cache.h"
 
 #include "base/private_folder.h"
-#include "harness/record/environment.h"
+#include "harness/program/environment.h"
 #include "base/digest.h"
 
 #include <fmt/format.h>

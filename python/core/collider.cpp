@@ -6,8 +6,8 @@
 #include "algorithms/parameters/table.h"
 #include "backends/cuda/cuda_device.h"
 #include "base/error.h"
-#include "harness/plans/choosing/race.h"
-#include "harness/sampling/statistics.h"
+#include "harness/choosing/race.h"
+#include "base/statistics.h"
 #include "python/core/device_world.h"
 #include "python/core/signals.h"
 

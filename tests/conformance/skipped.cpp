@@ -2,7 +2,7 @@
 // Tetrahedra that a frame skips: in no pair of any algorithm, in no bound, and back in the next frame.
 #include "algorithms/published/published_frame.h"
 #include "tests/support/prepared_trees.h"
-#include "harness/plans/frames.h"
+#include "harness/frames/frames.h"
 #include "harness/verify/oracle/frame_truth.h"
 #include "tests/support/on_device.h"
 #include "tests/support/flawed.h"

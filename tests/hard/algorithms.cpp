@@ -2,7 +2,7 @@
 // Every algorithm on every device misses no intersecting pair of any family with rounding=safe.
 #include "algorithms/bodies/origin.h"
 #include "algorithms/narrow_phase/contact_settings.h"
-#include "harness/plans/frames.h"
+#include "harness/frames/frames.h"
 #include "harness/verify/oracle/motion_truth.h"
 #include "base/error.h"
 #include "scenes/hard/hard.h"

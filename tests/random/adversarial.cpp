@@ -8,7 +8,7 @@
 // when a count is wrong. --help lists all options.
 #include "backends/registry.h"
 #include "harness/verify/adversarial.h"
-#include "harness/record/environment.h"
+#include "harness/program/environment.h"
 #include "harness/plans/cells.h"
 #include "harness/sampling/measurement.h"
 #include "base/error.h"

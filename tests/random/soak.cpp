@@ -5,7 +5,7 @@
 // Prints one line per tenth. Exit code 1 if an answer differs from that of the same cell on the host without
 // a limit, or if memory, open files or device buffers grow. Exit code 3 if a kernel writes past the end of a
 // buffer.
-#include "harness/record/environment.h"
+#include "harness/program/environment.h"
 #include "base/error.h"
 #include "tests/support/limited.h"
 #include "tests/support/scenes.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "harness/record/environment.h"
+#include "harness/program/environment.h"
 
 #include <cstdint>
 #include <cstdlib>

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "harness/commands/options/command_line.h"
 
-#include "harness/commands/external.h"
+#include "harness/program/external.h"
 #include "harness/commands/options/citation.h"
 #include "harness/commands/options/completion.h"
 #include "harness/commands/options/contradictions.h"
 #include "harness/commands/options/external_options.h"
 #include "harness/commands/options/unknown_words.h"
-#include "harness/record/environment.h"
-#include "harness/sampling/ranks/run_on_ranks.h"
+#include "harness/program/environment.h"
+#include "harness/program/run_on_ranks.h"
 #include "base/standard_streams.h"
 #include "base/error.h"
 

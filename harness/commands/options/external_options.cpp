@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/commands/options/external_options.h"
 
-#include "harness/commands/external.h"
+#include "harness/program/external.h"
 #include "base/error.h"
 
 #include <CLI/CLI.hpp>

@@ -5,7 +5,10 @@
 #include "harness/commands/options/contradictions.h"
 #include "harness/commands/options/reading.h"
 #include "harness/commands/options/sets.h"
-#include "harness/commands/commands.h"
+#include "harness/commands/accuracy.h"
+#include "harness/commands/check.h"
+#include "harness/commands/run.h"
+#include "harness/profile/command.h"
 #include "harness/record/table/throughput.h"
 #include "harness/sampling/isolation/isolated_sampler.h"
 #include "base/error.h"
@@ -27,20 +30,13 @@ TruthAmount parse_truth(const std::string& text) {
     throw InputError(fmt::format("--truth {}: give none, pairs or contacts", text));
 }
 
-/// The settings of --set and of --threads.
-auto sets_of(const std::vector<std::string>& texts, const RunOptions& options) {
-    auto sets = parse_sets(texts);
-    if (options.threads) sets.push_back({"threads", {std::to_string(*options.threads)}});
-    return sets;
-}
-
 constexpr auto trace_help =
     "write a timeline of the middle frame of the first finished cell to this JSON file "
     "(for ui.perfetto.dev or chrome://tracing)";
 constexpr auto scene_help = "NAME, NAME:par=value,..., a scene description (.json) or a recording (.frames)";
 
 /// The options that define the cells: meshes, frames, algorithms, devices and settings.
-void add_cell_options(CLI::App& app, RunOptions& options, std::vector<std::string>& sets) {
+void add_cell_options(CLI::App& app, RunOptions& options) {
     app.add_option("--mesh", options.meshes, "a mesh file of the scene, instead of SCENE; may be repeated")
         ->expected(1)
         ->take_all();
@@ -62,22 +58,26 @@ void add_cell_options(CLI::App& app, RunOptions& options, std::vector<std::strin
                default_device))
         ->delimiter(',');
     app.add_option("--frames", options.frames, "FIRST:LAST, both inclusive, or one number (default: all)");
-    app.add_option("--threads", options.threads,
-                   "number of threads of device host, as --set threads=N (default: one for each core)")
+    app.add_option_function<std::size_t>(
+           "--threads",
+           [&options](std::size_t threads) {
+               options.threads = threads;
+               options.request.sets.push_back({"threads", {std::to_string(threads)}});
+           },
+           "number of threads of device host, as --set threads=N (default: one for each core)")
         ->check(CLI::Range(0, 4096));
     app.add_option("--filter", options.filter,
                    "only cells whose name contains a match of this regular expression, as of grep -E; tables "
                    "and --dry-run show the names")
         ->option_text("REGEX");
-    app.add_option("--set", sets,
-                   "NAME=V1,V2, NAME=A..B:STEP or NAME=A..B*FACTOR: each value makes a cell; may be repeated")
-        ->expected(1)
-        ->take_all();
+    add_set_option(
+        app, options.request,
+        "NAME=V1,V2, NAME=A..B:STEP or NAME=A..B*FACTOR: each value makes a cell; may be repeated");
 }
 
 /// The options that `run`, `check`, `accuracy` and `profile` have in common.
-void add_run_options(CLI::App& app, RunOptions& options, std::vector<std::string>& sets) {
-    add_cell_options(app, options, sets);
+void add_run_options(CLI::App& app, RunOptions& options) {
+    add_cell_options(app, options);
     app.add_option("--out", options.out,
                    "append records to this JSON-lines file; an incomplete last line is moved to FILE.torn");
     app.add_option("--require", options.require, "devices or backends whose absence is an error")
@@ -182,9 +182,9 @@ void add_table(CLI::App& app, RunOptions& options) {
 }
 
 /// add_run_options() with other defaults for `accuracy`, which always compares with the truth.
-void add_accuracy_run_options(CLI::App& app, RunOptions& options, std::vector<std::string>& sets) {
+void add_accuracy_run_options(CLI::App& app, RunOptions& options) {
     options.truth_contacts = 1000;
-    add_run_options(app, options, sets);
+    add_run_options(app, options);
     app.remove_option(app.get_option("--truth"));
     app.get_option("--algorithm")->description("A,B (see 'tandem algorithms'; default: chunked)");
     app.get_option("--frames")->description("FIRST:LAST, both inclusive (default: ten in the middle)");
@@ -259,11 +259,11 @@ void apply_plan(CLI::App& app, RunOptions& options) {
 } // namespace
 
 Action add_run(CLI::App& app) {
-    auto given = std::make_shared<Given<RunOptions>>();
-    auto& options = given->options;
+    auto given = std::make_shared<RunOptions>();
+    auto& options = *given;
     app.add_option("scenes", options.scenes,
                    fmt::format("{}, or a plan of cells (.json, see results/plan.schema.json)", scene_help));
-    add_run_options(app, options, given->sets);
+    add_run_options(app, options);
     add_choosing(app, options);
     app.add_flag("--dry-run", options.dry_run,
                  "list the cells with their keys and the estimated time; measure none");
@@ -295,11 +295,8 @@ Action add_run(CLI::App& app) {
     app.add_flag("!--no-count", options.count, "skip the replay that counts work");
     app.add_flag("!--no-check", options.check, "do not compare with the reference");
     add_check_afresh(app, options);
-    app.callback([given, line = &app] {
-        apply_plan(*line, given->options);
-        given->options.request.sets = sets_of(given->sets, given->options);
-    });
-    return [given] { return run_command(given->options); };
+    app.callback([given, line = &app] { apply_plan(*line, *given); });
+    return [given] { return run_command(*given); };
 }
 
 Action add_isolated(CLI::App& app) {
@@ -308,20 +305,17 @@ Action add_isolated(CLI::App& app) {
 }
 
 Action add_check(CLI::App& app) {
-    auto given = std::make_shared<Given<RunOptions>>();
-    app.add_option("scene", given->options.scene, scene_help);
-    add_run_options(app, given->options, given->sets);
-    return [given] {
-        given->options.request.sets = sets_of(given->sets, given->options);
-        return check_command(given->options);
-    };
+    auto given = std::make_shared<RunOptions>();
+    app.add_option("scene", given->scene, scene_help);
+    add_run_options(app, *given);
+    return [given] { return check_command(*given); };
 }
 
 Action add_accuracy(CLI::App& app) {
-    auto given = std::make_shared<Given<AccuracyOptions>>();
-    auto& options = given->options;
+    auto given = std::make_shared<AccuracyOptions>();
+    auto& options = *given;
     app.add_option("scenes", options.scenes, scene_help);
-    add_accuracy_run_options(app, options.run, given->sets);
+    add_accuracy_run_options(app, options.run);
     app.add_option("--repeat", options.run.repeat, "number of samples of each cell (default: 3)")
         ->check(CLI::Range(1, 1000));
     app.add_flag("!--no-check", options.run.check, "do not compare with the reference, only with the truth");
@@ -329,20 +323,17 @@ Action add_accuracy(CLI::App& app) {
     app.add_option("--figures", options.figures,
                    "draw the records of --out, or of FOLDER/accuracy.jsonl without --out, into this folder")
         ->option_text("FOLDER");
-    return [given] {
-        given->options.run.request.sets = sets_of(given->sets, given->options.run);
-        return accuracy_command(given->options);
-    };
+    return [given] { return accuracy_command(*given); };
 }
 
 /// A profile does not compare with the truth, so it has no options for it.
 Action add_profile(CLI::App& app) {
-    auto given = std::make_shared<Given<ProfileOptions>>();
-    auto& options = given->options;
+    auto given = std::make_shared<ProfileOptions>();
+    auto& options = *given;
     auto& run = options.run;
     run.truth = TruthAmount::none;
     app.add_option("scene", run.scene, scene_help);
-    add_run_options(app, run, given->sets);
+    add_run_options(app, run);
     for (const auto* name : {"--truth", "--truth-contacts"}) app.remove_option(app.get_option(name));
     add_sampling(app, run);
     app.add_option("--ceilings", options.ceilings,
@@ -352,10 +343,7 @@ Action add_profile(CLI::App& app) {
     app.add_flag("--all", options.all,
                  "print one row for every kernel (default: one row for all kernels below 1 %)");
     app.add_flag("!--no-check", run.check, "do not compare with the reference");
-    return [given] {
-        given->options.run.request.sets = sets_of(given->sets, given->options.run);
-        return profile_command(given->options);
-    };
+    return [given] { return profile_command(*given); };
 }
 
 } // namespace tandem

@@ -1,22 +1,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <string>
-#include <utility>
-#include <vector>
+#include "harness/plans/cells.h"
+
+namespace CLI {
+class App;
+}
 
 namespace tandem {
 
-/// The settings and their values, in order, from texts "NAME=V1,V2". A value may be a range (see ranges.h).
-/// Throws InputError.
-std::vector<std::pair<std::string, std::vector<std::string>>>
-parse_sets(const std::vector<std::string>& texts);
-
-/// The options of a command and the texts of its --set, which are parsed after the line has been read.
-template<class Options>
-struct Given {
-    Options options;
-    std::vector<std::string> sets;
-};
+/// Adds --set. Texts "NAME=V1,V2" become settings of the request, in order; a value may be a range (see
+/// ranges.h). Parsing throws InputError.
+void add_set_option(CLI::App& app, Request& request, const std::string& help);
 
 } // namespace tandem

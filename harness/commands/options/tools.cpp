@@ -5,7 +5,9 @@
 #include "harness/commands/options/actions.h"
 #include "harness/commands/options/reading.h"
 #include "harness/commands/options/sets.h"
-#include "harness/commands/commands.h"
+#include "harness/commands/export.h"
+#include "harness/commands/listings.h"
+#include "harness/simulate/command.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -42,8 +44,8 @@ void add_motion_options(CLI::App& app, SimulateOptions& options) {
 } // namespace
 
 Action add_simulate(CLI::App& app) {
-    auto given = std::make_shared<Given<SimulateOptions>>();
-    auto& options = given->options;
+    auto given = std::make_shared<SimulateOptions>();
+    auto& options = *given;
     add_motion_options(app, options);
     app.add_option("--algorithm", options.request.algorithms,
                    "the algorithm that finds contacts (default: chunked)");
@@ -51,17 +53,12 @@ Action add_simulate(CLI::App& app) {
                    "a preset of the algorithm (see 'tandem algorithms'; default: its first)");
     app.add_option("--device", options.request.devices,
                    fmt::format("the device that finds contacts (default: {})", default_device));
-    app.add_option("--set", given->sets,
-                   "NAME=VALUE: a setting of the algorithm (default: contact_rule=sat, decision=recheck)")
-        ->expected(1)
-        ->take_all();
+    add_set_option(app, options.request,
+                   "NAME=VALUE: a setting of the algorithm (default: contact_rule=sat, decision=recheck)");
     app.add_option("--require", options.require, "devices or backends whose absence is an error")
         ->delimiter(',');
     app.add_flag("--quiet", options.quiet, "print no progress line");
-    return [given] {
-        given->options.request.sets = parse_sets(given->sets);
-        return simulate_command(given->options);
-    };
+    return [given] { return simulate_command(*given); };
 }
 
 namespace {

@@ -7,14 +7,14 @@
 
 namespace tandem {
 
-nlohmann::ordered_json trace_frame(const Cell& cell, const Job& job) {
-    Replays replays(cell, job.scene, job.range);
-    const auto index = job.range.size() / 2;
+nlohmann::ordered_json trace_frame(const Cell& cell, const Task& task) {
+    Replays replays(cell, task.scene, task.range);
+    const auto index = task.range.size() / 2;
     auto traces = replays.traced(index);
     std::vector<DeviceTimeline> devices;
     for (std::size_t i = 0; i < cell.devices.size(); ++i)
         devices.push_back({cell.devices[i]->info(), std::move(traces[i])});
-    return timeline_json(devices, describe(cell), job.range.first() + index);
+    return timeline_json(devices, describe(cell), task.range.first() + index);
 }
 
 } // namespace tandem

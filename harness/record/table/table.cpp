@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "harness/record/table/table.h"
 
-#include "harness/sampling/ranks/rank_team.h"
-#include "harness/sampling/statistics.h"
+#include "harness/plans/cell_session.h"
+#include "base/statistics.h"
 #include "base/standard_streams.h"
 #include "base/text_lines.h"
 #include "harness/record/table/throughput.h"

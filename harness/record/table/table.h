@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "harness/record/table/columns.h"
+#include "base/columns.h"
 #include "harness/record/verdict.h"
 
 #include <span>

@@ -2,7 +2,6 @@
 #include "harness/record/table/throughput.h"
 
 #include "algorithms/bodies/cost.h"
-#include "harness/profile/kernels.h"
 
 #include <numeric>
 
@@ -27,7 +26,7 @@ std::optional<double> pairs_per_s(const Measurement& m) {
 std::optional<double> bytes_per_s(const Row& row, const Scene& scene) {
     const auto& m = *row.measurement;
     if (m.breakdowns.empty()) return std::nullopt;
-    const auto facts = profile::mean_frame(m);
+    const auto facts = mean_frame(m);
     const auto costs = row.cell->algorithm->costs(scene, m.settings);
     std::optional<double> bytes;
     for (const auto& [entry, sample] : m.breakdowns.back().kernels)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/sampling/isolation/child_process.h"
 
-#include "harness/sampling/ranks/environment.h"
+#include "harness/program/launcher.h"
 #include "base/error.h"
 
 #include <array>

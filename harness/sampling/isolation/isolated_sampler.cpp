@@ -3,7 +3,7 @@
 #include "harness/sampling/isolation/isolated_sampler.h"
 
 #include "harness/sampling/isolation/child_process.h"
-#include "harness/sampling/interrupt.h"
+#include "harness/program/interrupt.h"
 #include "harness/sampling/isolation/request.h"
 #include "base/error.h"
 

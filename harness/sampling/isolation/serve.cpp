@@ -4,7 +4,7 @@
 #include "harness/sampling/isolation/child_process.h"
 #include "harness/sampling/isolation/isolated_sampler.h"
 #include "harness/sampling/isolation/request.h"
-#include "harness/plans/job.h"
+#include "harness/plans/task.h"
 #include "harness/sampling/local_sampler.h"
 #include "base/standard_streams.h"
 #include "base/error.h"
@@ -38,17 +38,17 @@ json answer_to(const json& message) {
     const auto backends = open_backends(std::array{request.devices}, {});
     const auto group = open_devices(request.options, backends, std::array{request.devices}).front();
     const auto& traversal = algorithm(request.algorithm);
-    const auto job = open_job(
+    const auto task = open_task(
         request.options, {make_cell(traversal, preset(traversal, request.preset), request.settings, group)});
     const auto cache = checks_folder(request.options);
-    References references(job.scene, job.range, cache);
-    Truths truths(job.scene, job.range, request.options.truth, request.options.truth_contacts, cache);
+    References references(task.scene, task.range, cache);
+    Truths truths(task.scene, task.range, request.options.truth, request.options.truth_contacts, cache);
     if (request.options.truth != TruthAmount::none) request.work.check.truths = &truths;
     CellState state;
-    if (!message.at("checked").is_null()) take_checked(state, message["checked"], job.cells.front());
+    if (!message.at("checked").is_null()) take_checked(state, message["checked"], task.cells.front());
     take_rounds(state, message.at("rounds"));
     const auto first = state.rounds;
-    LocalSampler sampler(job.cells.front(), job.scene, job.range, references, std::move(state));
+    LocalSampler sampler(task.cells.front(), task.scene, task.range, references, std::move(state));
     json answer = json::object();
     work(sampler, request.work, answer);
     answer["checked"] =

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "harness/verify/accuracy/answer_errors.h"
-#include "harness/record/fields_json.h"
+#include "harness/fields/fields_json.h"
 
 namespace tandem {
 

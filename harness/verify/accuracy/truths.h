@@ -5,7 +5,7 @@
 #include "algorithms/orders/order.h"
 #include "harness/verify/accuracy/answer_errors.h"
 #include "harness/verify/oracle/motion_truth.h"
-#include "harness/plans/frames.h"
+#include "harness/frames/frames.h"
 #include "harness/verify/verification_cache.h"
 
 #include <map>

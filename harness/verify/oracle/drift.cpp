@@ -5,7 +5,7 @@
 #include "algorithms/bodies/shift.h"
 #include "harness/verify/oracle/posed.h"
 #include "geometry/rounding.h"
-#include "harness/sampling/statistics.h"
+#include "base/statistics.h"
 #include "harness/verify/world_vertices.h"
 #include "base/parallel.h"
 

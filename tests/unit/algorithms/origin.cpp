@@ -2,7 +2,7 @@
 // The coordinate origin with origin=auto: a distant scene gives the same results as the same scene near the
 // world's origin.
 #include "algorithms/bodies/origin.h"
-#include "harness/plans/frames.h"
+#include "harness/frames/frames.h"
 #include "tests/support/on_device.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"

@@ -2,7 +2,7 @@
 // What people read in a terminal: widths, units of columns, and the time left.
 #include "base/progress.h"
 #include "base/text_lines.h"
-#include "harness/record/table/columns.h"
+#include "base/columns.h"
 #include "harness/sampling/time_left.h"
 #include "tests/support/test.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "harness/plans/choosing/candidates.h"
+#include "harness/plans/candidates.h"
 
 #include "base/error.h"
-#include "harness/plans/choosing/choose.h"
+#include "harness/choosing/choose.h"
 #include "scenes/scene.h"
 #include "tests/support/cells.h"
 #include "tests/support/test.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "harness/plans/choosing/race.h"
+#include "harness/choosing/race.h"
 
 #include "base/random.h"
 #include "tests/support/cells.h"

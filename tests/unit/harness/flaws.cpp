@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Flawed tetrahedra of frames: counted, reported, refused or skipped.
-#include "harness/plans/frames.h"
+#include "harness/frames/frames.h"
 #include "base/error.h"
 #include "tests/support/flawed.h"
 #include "tests/support/message_of.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Frames of a range: stored if they fit, generated again if not, with the same answers.
-#include "harness/plans/frames.h"
+#include "harness/frames/frames.h"
 
 #include "harness/verify/accuracy/answer_errors_json.h"
-#include "harness/plans/choosing/choose.h"
+#include "harness/choosing/choose.h"
 #include "harness/sampling/local_sampler.h"
 #include "base/parallel.h"
 #include "tests/support/cells.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "harness/record/field.h"
+#include "harness/fields/field.h"
 #include "harness/record/schema.h"
 #include "tests/support/test.h"
 

@@ -2,7 +2,7 @@
 #include "algorithms/traversal.h"
 #include "backends/registry.h"
 #include "harness/plans/cells.h"
-#include "harness/plans/frames.h"
+#include "harness/frames/frames.h"
 #include "harness/record/verdict.h"
 #include "scenes/scene.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "harness/sampling/statistics.h"
+#include "base/statistics.h"
 #include "tests/support/test.h"
 
 #include <random>

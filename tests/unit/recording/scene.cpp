@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "harness/plans/frames.h"
+#include "harness/frames/frames.h"
 #include "tests/support/folder.h"
 #include "tests/support/recordings.h"
 #include "tests/support/test.h"
