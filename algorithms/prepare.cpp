@@ -73,6 +73,21 @@ std::string names_of(std::span<Device* const> devices) {
     return fmt::format("{}", fmt::join(names, " + "));
 }
 
+/// Throws InputError if several devices cannot split a frame with these settings.
+void check_split(const Traversal& traversal, std::span<Device* const> devices, const Settings& settings) {
+    if (devices.size() < 2) return;
+    if (walks_part(settings))
+        throw InputError(
+            fmt::format("settings first_body_pair and most_body_pairs are for one device, and {} "
+                        "were named; name one, or leave them out",
+                        names_of(devices)));
+    if (is_published(settings))
+        throw InputError(
+            fmt::format("{} with residency=published cannot split a frame between {}: the paper's data path "
+                        "has one device; name one device, or leave residency and preset out",
+                        traversal.name(), names_of(devices)));
+}
+
 } // namespace
 
 void Session::set_threads() const {
@@ -256,16 +271,7 @@ Settings Traversal::fitted(const Settings& asked, const DeviceInfo& info, const 
 
 void Traversal::check(std::span<Device* const> devices, const Settings& settings) const {
     for (const auto* device : devices) fitted(settings, device->info());
-    if (devices.size() > 1 && walks_part(settings))
-        throw InputError(
-            fmt::format("settings first_body_pair and most_body_pairs are for one device, and {} "
-                        "were named; name one, or leave them out",
-                        names_of(devices)));
-    if (devices.size() > 1 && is_published(settings))
-        throw InputError(
-            fmt::format("{} with residency=published cannot split a frame between {}: the paper's data path "
-                        "has one device; name one device, or leave residency and preset out",
-                        name(), names_of(devices)));
+    check_split(*this, devices, settings);
 }
 
 std::unique_ptr<Session> Traversal::prepare(std::span<Device* const> devices, const Scene& scene,
@@ -273,7 +279,7 @@ std::unique_ptr<Session> Traversal::prepare(std::span<Device* const> devices, co
     if (devices.empty()) throw InputError(fmt::format("{} needs a device to run on", name()));
     if (scene.bodies.empty()) throw InputError(fmt::format("scene {} has no bodies", scene.name));
     check_scene(scene, geometry_of(settings).precision);
-    check(devices, settings);
+    check_split(*this, devices, settings);
     std::vector<Settings> fitting;
     for (const auto* device : devices) fitting.push_back(fitted(settings, device->info(), &scene));
     auto& device = *devices.front();

@@ -1,69 +1,38 @@
 // SPDX-License-Identifier: MIT
 #include "harness/commands/dumps.h"
 
-#include <fmt/format.h>
-#include <iterator>
-#include <utility>
+#include "harness/plans/cell_session.h"
+#include "harness/plans/rank_team.h"
+#include "harness/profile/timeline/trace_frame.h"
+#include "harness/program/interrupt.h"
 
 namespace tandem {
 
-namespace {
+Dumps::Dumps(const RunOptions& options, bool writes)
+    : pairs_(writes ? options.dump_pairs : std::string(), pairs_header),
+      contacts_(writes ? options.dump_contacts : std::string(), contacts_header),
+      trace_(writes ? options.trace : std::string()) {}
 
-/// Lines are written in pieces of about this size, because a frame can have millions of them.
-constexpr std::size_t piece_bytes = 1 << 20;
-
-} // namespace
-
-/// The header before the first line. It comes with the lines, because pipes are written directly.
-std::string DumpFile::begun() { return std::string(std::exchange(header_, {})); }
-
-void DumpFile::write_pieces(std::string& text, std::size_t least) {
-    if (text.size() < least) return;
-    file_.write(text);
-    text.clear();
-}
-
-void DumpFile::pairs(std::size_t frame, std::span<const Pair> pairs) {
-    auto text = begun();
-    for (const auto& p : pairs) {
-        fmt::format_to(std::back_inserter(text), "{},{},{},{},{}\n", frame, p.body_a, p.tet_a, p.body_b,
-                       p.tet_b);
-        write_pieces(text, piece_bytes);
+void Dumps::dump(const Cell& cell, const Task& task) {
+    const auto session = prepare_session(cell, task.scene);
+    for (std::size_t i = 0; i < task.range.size(); ++i) {
+        if (decided(cell.team, Interrupt::asked())) throw Interrupted();
+        const auto state = task.range.state(i, session->settings()[parameters::motion]);
+        const auto result = session->run(FrameView(state.input()).checked());
+        // Collective: all ranks download; only rank 0 writes.
+        if (!task.options.dump_pairs.empty())
+            if (const auto found = result.download(); pairs_) pairs_.pairs(task.range.first() + i, found);
+        if (!task.options.dump_contacts.empty())
+            if (const auto found = result.download_contacts(); contacts_)
+                contacts_.contacts(task.range.first() + i, found);
     }
-    write_pieces(text, 1);
+    pairs_.finish();
+    contacts_.finish();
 }
 
-void DumpFile::contacts(std::size_t frame, std::span<const ContactPoint> contacts) {
-    auto text = begun();
-    for (const auto& c : contacts) {
-        fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{},{},{},{}\n", frame,
-                       c.pair.body_a, c.pair.tet_a, c.pair.body_b, c.pair.tet_b, c.point[0], c.point[1],
-                       c.point[2], c.normal[0], c.normal[1], c.normal[2], c.depth);
-        write_pieces(text, piece_bytes);
-    }
-    write_pieces(text, 1);
-}
-
-void DumpFile::chunks(std::size_t number, const Mesh& mesh, std::span<const std::uint32_t> order,
-                      std::uint32_t leaves) {
-    auto text = begun();
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        const auto chunk = i / leaves;
-        fmt::format_to(std::back_inserter(text), "{},{},{},{},{}", number, order[i], i, chunk,
-                       chunk / leaves);
-        for (const auto vertex : mesh.tetrahedra[order[i]]) {
-            const auto& at = mesh.vertices[vertex];
-            fmt::format_to(std::back_inserter(text), ",{},{},{}", at.x(), at.y(), at.z());
-        }
-        text += '\n';
-        write_pieces(text, piece_bytes);
-    }
-    write_pieces(text, 1);
-}
-
-void DumpFile::finish() {
-    file_.write(begun());
-    file_.finish();
+void Dumps::write(const Cell& cell, const Task& task) {
+    if (!task.options.dump_pairs.empty() || !task.options.dump_contacts.empty()) dump(cell, task);
+    if (!task.options.trace.empty()) trace_.write(trace_frame(cell, task));
 }
 
 } // namespace tandem

@@ -4,7 +4,7 @@
 #include "algorithms/parameters/table.h"
 #include "harness/commands/export.h"
 #include "harness/commands/chunk_numbers.h"
-#include "harness/commands/dumps.h"
+#include "harness/commands/dump_file.h"
 #include "harness/program/external.h"
 #include "harness/simulate/frame_contacts.h"
 #include "harness/plans/inputs.h"
