@@ -11,10 +11,10 @@ namespace tandem {
 
 namespace {
 
-enum class Kind : std::uint32_t { none, input, output, memory, other };
+enum class ErrorKind : std::uint32_t { none, input, output, memory, other };
 
 struct Failure {
-    Kind kind = Kind::none;
+    ErrorKind kind = ErrorKind::none;
     std::string message{};
     bool operator==(const Failure&) const = default;
 };
@@ -23,23 +23,23 @@ Failure failure_of(const std::function<void()>& work) {
     try {
         work();
     } catch (const InputError& error) {
-        return {Kind::input, error.what()};
+        return {ErrorKind::input, error.what()};
     } catch (const OutputError& error) {
-        return {Kind::output, error.what()};
+        return {ErrorKind::output, error.what()};
     } catch (const OutOfMemory& error) {
-        return {Kind::memory, error.what()};
+        return {ErrorKind::memory, error.what()};
     } catch (const std::bad_alloc&) {
-        return {Kind::other, "out of host memory; use fewer bodies or frames"};
+        return {ErrorKind::other, "out of host memory; use fewer bodies or frames"};
     } catch (const std::exception& error) {
-        return {Kind::other, error.what()};
+        return {ErrorKind::other, error.what()};
     }
     return {};
 }
 
 [[noreturn]] void throw_shared(const Failure& failure) {
-    if (failure.kind == Kind::input) throw SharedError<InputError>(failure.message);
-    if (failure.kind == Kind::output) throw SharedError<OutputError>(failure.message);
-    if (failure.kind == Kind::memory) throw SharedError<OutOfMemory>(failure.message);
+    if (failure.kind == ErrorKind::input) throw SharedError<InputError>(failure.message);
+    if (failure.kind == ErrorKind::output) throw SharedError<OutputError>(failure.message);
+    if (failure.kind == ErrorKind::memory) throw SharedError<OutOfMemory>(failure.message);
     throw SharedError<DeviceError>(failure.message);
 }
 
@@ -54,11 +54,11 @@ void run_together(Ranks& ranks, const std::function<void()>& work) {
     for (const auto& bytes : ranks.gather_to_all(message)) {
         MessageReader reader(bytes);
         auto& failure = all.emplace_back();
-        failure.kind = reader.read<Kind>();
+        failure.kind = reader.read<ErrorKind>();
         failure.message = reader.read_text();
     }
     const auto first =
-        std::ranges::find_if(all, [](const Failure& failure) { return failure.kind != Kind::none; });
+        std::ranges::find_if(all, [](const Failure& failure) { return failure.kind != ErrorKind::none; });
     if (first == all.end()) return;
     const bool is_same_on_all = std::ranges::count(all, *first) == std::ssize(all);
     if (!is_same_on_all) first->message = fmt::format("rank {}: {}", first - all.begin(), first->message);

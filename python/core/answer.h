@@ -9,7 +9,7 @@ namespace tandem::python {
 /// interpreter's lock.
 class Answer {
 public:
-    Answer(std::shared_ptr<Collider> collider, Run run)
+    Answer(std::shared_ptr<Collider> collider, CollideRun run)
         : collider_(std::move(collider)),
           result_(std::move(run.result)),
           seconds_(run.seconds),
@@ -49,7 +49,7 @@ private:
     FrameResult result_;
     double seconds_;
     std::shared_ptr<const Frame> frame_; ///< null if it was in memory of the device
-    std::uint64_t number_;               ///< Run::number
+    std::uint64_t number_;               ///< CollideRun::number
     mutable std::optional<OnDevice> on_device_;
 };
 

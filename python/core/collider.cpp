@@ -210,7 +210,8 @@ FrameResult Collider::run_frame(Session& session, const Frames& frames,
 }
 
 template<class Frames>
-Run Collider::run_frames(const Frames& frames, const std::optional<std::vector<BodyPair>>& body_pairs) {
+CollideRun Collider::run_frames(const Frames& frames,
+                                const std::optional<std::vector<BodyPair>>& body_pairs) {
     if (!session_) choose_for(frames, seconds_of_choosing);
     const auto begin = std::chrono::steady_clock::now();
     auto result = run_frame(*session_, frames, body_pairs);
@@ -228,7 +229,7 @@ oracle::World Collider::world_of(std::uint64_t number) const {
     return world_on_device(*bodies);
 }
 
-Run Collider::run(const Input& input) {
+CollideRun Collider::run(const Input& input) {
     const auto own = lock();
     check(input);
     return with_signals([&] {

@@ -36,7 +36,7 @@ struct ColliderOptions {
 };
 
 /// One run of a collider.
-struct Run {
+struct CollideRun {
     FrameResult result;
     double seconds = 0;                 ///< of the frame itself, measured as the program does
     std::shared_ptr<const Frame> frame; ///< null if it was in memory of the device
@@ -54,7 +54,7 @@ public:
 
     /// Finds the pairs of a frame, with motion=linear up to its successor. Throws InputError, DeviceError
     /// also in a forked process, or what the handler of a signal raises (signals.h).
-    Run run(const Input& input);
+    CollideRun run(const Input& input);
     /// Algorithm auto: times the candidates on that frame and selects the fastest for later runs. Throws
     /// InputError for another algorithm.
     std::vector<Trial> tune(const Input& input, double seconds);
@@ -113,7 +113,7 @@ private:
     FrameResult run_frame(Session& session, const Frames& frames,
                           const std::optional<std::vector<BodyPair>>& given);
     template<class Frames>
-    Run run_frames(const Frames& frames, const std::optional<std::vector<BodyPair>>& body_pairs);
+    CollideRun run_frames(const Frames& frames, const std::optional<std::vector<BodyPair>>& body_pairs);
     template<class Frames>
     std::vector<Trial> choose_for(const Frames& frames, double seconds);
 

@@ -57,13 +57,13 @@ const std::vector<std::uint32_t> sides_of_box{0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6
                                               2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
 
 /// The vertices of a body's surface, or the corners of their box.
-Points shown_points(const Surface& surface, const Points& vertices, bool boxed) {
+Points shown_points(const BoundarySurface& surface, const Points& vertices, bool boxed) {
     Points points;
     for (const auto vertex : surface.vertices) points.push_back(vertices[vertex]);
     return boxed ? corners_of(box_of(points)) : points;
 }
 
-GeometrySizes sizes_of(const Scene& scene, const std::vector<Surface>& surfaces, std::size_t frames) {
+GeometrySizes sizes_of(const Scene& scene, const std::vector<BoundarySurface>& surfaces, std::size_t frames) {
     GeometrySizes sizes{.bodies = scene.bodies.size(), .frames = frames};
     for (const auto& surface : surfaces)
         sizes.meshes.push_back({surface.vertices.size(), surface.triangles.size() / 3, 0, 0});
@@ -114,7 +114,7 @@ private:
 
     const Scene& scene_;
     const GeometryParts& parts_;
-    std::vector<Surface> surfaces_;
+    std::vector<BoundarySurface> surfaces_;
     GeometryCut cut_;
     std::vector<std::size_t> frames_;
     std::vector<std::vector<Pose>> poses_;

@@ -13,8 +13,8 @@ namespace tandem {
 
 namespace {
 
+using exporting::BoundarySurface;
 using exporting::GlbFile;
-using exporting::Surface;
 using Json = nlohmann::json;
 
 /// Colours of consecutive bodies (linear RGB), distinguishable with colour blindness (after Okabe and Ito
@@ -27,7 +27,7 @@ constexpr std::array<std::array<double, 3>, 7> colours{{{0.79, 0.35, 0.0},
                                                         {0.6, 0.19, 0.38},
                                                         {0.35, 0.35, 0.35}}};
 
-Json primitive(GlbFile& file, const Surface& surface, const std::vector<Eigen::Vector3d>& vertices) {
+Json primitive(GlbFile& file, const BoundarySurface& surface, const std::vector<Eigen::Vector3d>& vertices) {
     const auto positions = file.floats(exporting::points_of(surface, vertices), 3, true);
     return {{"attributes", {{"POSITION", positions}}}, {"indices", file.indices(surface.triangles)}};
 }

@@ -29,7 +29,7 @@ struct Track {
 
 /// The surface of one deformable body. A target has the displacement of each point from the first frame.
 struct Morph {
-    Surface surface;
+    BoundarySurface surface;
     std::vector<float> first;
     Json targets = Json::array();
 

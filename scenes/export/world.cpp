@@ -32,8 +32,8 @@ std::vector<Eigen::Vector3d> world_vertices(const Scene& scene, const Frame& fra
 
 /// Faces are outward also for inverted tetrahedra. Vertices off the boundary are left out, the rest
 /// renumbered.
-Surface surface_of(const Mesh& mesh) {
-    Surface surface;
+BoundarySurface surface_of(const Mesh& mesh) {
+    BoundarySurface surface;
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
         const auto& corners = mesh.tetrahedra[t];
         const bool flip = inverted(mesh, corners);
@@ -56,7 +56,7 @@ Surface surface_of(const Mesh& mesh) {
     return surface;
 }
 
-std::vector<float> points_of(const Surface& surface, const std::vector<Eigen::Vector3d>& vertices) {
+std::vector<float> points_of(const BoundarySurface& surface, const std::vector<Eigen::Vector3d>& vertices) {
     std::vector<float> points;
     points.reserve(surface.vertices.size() * 3);
     for (const auto vertex : surface.vertices)
@@ -65,7 +65,7 @@ std::vector<float> points_of(const Surface& surface, const std::vector<Eigen::Ve
 }
 
 void write_file(const std::string& path, std::string_view bytes) {
-    recording::File(path, recording::File::Mode::replace).write(0, bytes);
+    recording::RecordingFile(path, recording::RecordingFile::Mode::replace).write(0, bytes);
 }
 
 } // namespace tandem::exporting

@@ -9,16 +9,16 @@ namespace tandem::exporting {
 std::vector<Eigen::Vector3d> world_vertices(const Scene& scene, const Frame& frame, std::size_t body);
 
 /// The boundary of a mesh as triangles, counterclockwise from outside.
-struct Surface {
+struct BoundarySurface {
     std::vector<std::uint32_t> vertices;   ///< mesh vertices on the boundary, ascending
     std::vector<std::uint32_t> triangles;  ///< three indices into `vertices` each
     std::vector<std::uint32_t> tetrahedra; ///< one a triangle: its tetrahedron
 };
 
-Surface surface_of(const Mesh& mesh);
+BoundarySurface surface_of(const Mesh& mesh);
 
 /// Coordinates x, y, z of a surface's vertices. `vertices` are the vertices of the mesh.
-std::vector<float> points_of(const Surface& surface, const std::vector<Eigen::Vector3d>& vertices);
+std::vector<float> points_of(const BoundarySurface& surface, const std::vector<Eigen::Vector3d>& vertices);
 
 /// Creates or replaces a file; throws InputError.
 void write_file(const std::string& path, std::string_view bytes);

@@ -18,15 +18,15 @@ namespace tandem::recording {
 
 namespace {
 
-int flags_of(File::Mode mode) {
+int flags_of(RecordingFile::Mode mode) {
     switch (mode) {
-    case File::Mode::read:
+    case RecordingFile::Mode::read:
         return O_RDONLY | O_CLOEXEC;
-    case File::Mode::create:
+    case RecordingFile::Mode::create:
         return O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC; // does not follow links
-    case File::Mode::update:
+    case RecordingFile::Mode::update:
         return O_RDWR | O_CLOEXEC;
-    case File::Mode::replace:
+    case RecordingFile::Mode::replace:
         break;
     }
     return O_RDWR | O_CREAT | O_CLOEXEC; // truncated after the lock is taken
@@ -39,18 +39,19 @@ void refuse_link(const std::string& path) {
 }
 
 /// Creates the file for new content. Removes one that a killed process left; its lock ended with the process.
-File make_partial(const std::string& path) {
+RecordingFile make_partial(const std::string& path) {
     refuse_link(path);
     if (std::filesystem::exists(path)) {
-        const File lock(path, File::Mode::update); // throws while another process has the lock
+        const RecordingFile lock(path,
+                                 RecordingFile::Mode::update); // throws while another process has the lock
         remove_if_exists(path);
     }
-    return File(path, File::Mode::create);
+    return RecordingFile(path, RecordingFile::Mode::create);
 }
 
 } // namespace
 
-File::File(const std::string& path, Mode mode) : path_(path), descriptor_(-1) {
+RecordingFile::RecordingFile(const std::string& path, Mode mode) : path_(path), descriptor_(-1) {
     constexpr mode_t permissions = 0666; // the umask is subtracted
     descriptor_ = open(path.c_str(), flags_of(mode), permissions);
     if (descriptor_ < 0 && errno == EEXIST)
@@ -70,7 +71,7 @@ File::File(const std::string& path, Mode mode) : path_(path), descriptor_(-1) {
 }
 
 /// Nothing has been lost when this throws: the old content is still there.
-void File::replace_content() {
+void RecordingFile::replace_content() {
     try {
         refuse_overwriting(descriptor_, path_);
         truncate(0);
@@ -80,25 +81,25 @@ void File::replace_content() {
     }
 }
 
-File::~File() {
+RecordingFile::~RecordingFile() {
     if (descriptor_ >= 0) close(descriptor_);
 }
 
-void File::fail(std::string_view what) const {
+void RecordingFile::fail(std::string_view what) const {
     throw InputError(fmt::format("{}: {} ({})", path_, what, std::strerror(errno)));
 }
 
-void File::fail_writing(std::string_view what) const {
+void RecordingFile::fail_writing(std::string_view what) const {
     throw OutputError(fmt::format("{}: {} ({})", path_, what, std::strerror(errno)));
 }
 
-std::uint64_t File::size() const {
+std::uint64_t RecordingFile::size() const {
     struct stat status {};
     if (fstat(descriptor_, &status) != 0) fail("cannot be read");
     return static_cast<std::uint64_t>(status.st_size);
 }
 
-std::string File::read(std::uint64_t offset, std::size_t bytes) const {
+std::string RecordingFile::read(std::uint64_t offset, std::size_t bytes) const {
     std::string result(bytes, '\0');
     std::size_t got = 0;
     while (got < bytes) {
@@ -111,7 +112,7 @@ std::string File::read(std::uint64_t offset, std::size_t bytes) const {
     return result;
 }
 
-void File::write(std::uint64_t offset, std::string_view bytes) {
+void RecordingFile::write(std::uint64_t offset, std::string_view bytes) {
     std::size_t done = 0;
     while (done < bytes.size()) {
         const auto n =
@@ -122,23 +123,23 @@ void File::write(std::uint64_t offset, std::string_view bytes) {
     }
 }
 
-void File::truncate(std::uint64_t size) {
+void RecordingFile::truncate(std::uint64_t size) {
     if (ftruncate(descriptor_, static_cast<off_t>(size)) != 0) fail_writing("cannot be shortened");
 }
 
-void File::sync() {
+void RecordingFile::sync() {
     if (fsync(descriptor_) != 0) fail_writing("writing failed");
 }
 
 std::string read_whole(const std::string& path) {
-    const File file(path, File::Mode::read);
+    const RecordingFile file(path, RecordingFile::Mode::read);
     return file.read(0, file.size());
 }
 
 void replace_whole(const std::string& path, std::string_view bytes) {
     check_output(path);
     const auto partial = path + ".partial";
-    File file = make_partial(partial);
+    RecordingFile file = make_partial(partial);
     file.write(0, bytes);
     file.sync();
     if (std::rename(partial.c_str(), path.c_str()) != 0)

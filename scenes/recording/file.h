@@ -9,18 +9,18 @@
 namespace tandem::recording {
 
 /// An open file. Throws InputError "PATH: what (reason)", or OutputError when writing fails.
-class File {
+class RecordingFile {
 public:
     /// read: an existing file. create: a new file, which must not exist. update: an existing file, to read
     /// and write. replace: an existing or new file, which is truncated unless it is an input or a file of
     /// records (base/files_in_use.h). All but read lock the file until the process ends.
     enum class Mode { read, create, update, replace };
 
-    File(const std::string& path, Mode mode);
-    ~File();
-    File(File&& other) noexcept
+    RecordingFile(const std::string& path, Mode mode);
+    ~RecordingFile();
+    RecordingFile(RecordingFile&& other) noexcept
         : path_(std::move(other.path_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
-    File& operator=(File&& other) noexcept {
+    RecordingFile& operator=(RecordingFile&& other) noexcept {
         std::swap(path_, other.path_);
         std::swap(descriptor_, other.descriptor_);
         return *this;

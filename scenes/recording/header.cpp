@@ -31,7 +31,7 @@ constexpr std::string_view magic("\x89TDMFR\r\n", 8);
 constexpr std::uint64_t bytes_before_specification = 40;
 
 /// The bytes of the header. Throws InputError for other files and when the checksum does not match.
-std::string checked_bytes(const File& file) {
+std::string checked_bytes(const RecordingFile& file) {
     const auto fail = [&](std::string_view what) {
         throw InputError(fmt::format("{}: {}", file.path(), what));
     };
@@ -92,7 +92,7 @@ std::string encode(const RecordingHeader& header) {
     return sealed(std::move(out));
 }
 
-std::pair<RecordingHeader, std::uint64_t> read_header(const File& file) {
+std::pair<RecordingHeader, std::uint64_t> read_header(const RecordingFile& file) {
     const auto bytes = checked_bytes(file);
     const auto body = std::string_view(bytes).substr(0, bytes.size() - sizeof(std::uint32_t));
     read::Cursor in(body, file.path(), magic.size() + 8);

@@ -40,7 +40,7 @@ std::uint64_t frame_bytes(const RecordingHeader& header);
 std::string encode(const RecordingHeader& header);
 
 /// The header of an open recording and its size in bytes; throws InputError.
-std::pair<RecordingHeader, std::uint64_t> read_header(const File& file);
+std::pair<RecordingHeader, std::uint64_t> read_header(const RecordingFile& file);
 
 } // namespace recording
 

@@ -11,7 +11,7 @@
 namespace tandem {
 
 /// Frames have equal sizes, so that the file's size gives their number. A remainder is a truncated frame.
-Recording::Recording(const std::string& path) : file_(path, recording::File::Mode::read) {
+Recording::Recording(const std::string& path) : file_(path, recording::RecordingFile::Mode::read) {
     note_input(path);
     std::tie(header_, header_bytes_) = recording::read_header(file_);
     frame_bytes_ = recording::frame_bytes(header_);

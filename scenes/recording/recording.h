@@ -32,7 +32,7 @@ public:
 private:
     void check(std::size_t number) const;
 
-    recording::File file_;
+    recording::RecordingFile file_;
     RecordingHeader header_;
     std::uint64_t header_bytes_ = 0;
     std::uint64_t frame_bytes_ = 0;

@@ -24,7 +24,7 @@ std::string difference(const RecordingHeader& found, const RecordingHeader& want
 }
 
 /// True for a part of the header, which a kill leaves. A loss of power can leave zeros after the part.
-bool is_partial_header(const recording::File& file, const std::string& header) {
+bool is_partial_header(const recording::RecordingFile& file, const std::string& header) {
     if (file.size() > header.size()) return false;
     auto found = file.read(0, file.size());
     found.resize(found.find_last_not_of('\0') + 1);
@@ -45,7 +45,7 @@ RecordingHeader recording_of(const std::string& specification, const Scene& scen
     return {described ? specification : scene.key, scene.digest, seconds_per_frame, recorded_bodies(scene)};
 }
 
-RecordingWriter::RecordingWriter(recording::File file, const RecordingHeader& header)
+RecordingWriter::RecordingWriter(recording::RecordingFile file, const RecordingHeader& header)
     : file_(std::move(file)),
       header_(header),
       header_bytes_(recording::encode(header).size()),
@@ -53,7 +53,7 @@ RecordingWriter::RecordingWriter(recording::File file, const RecordingHeader& he
 
 RecordingWriter RecordingWriter::create(const std::string& path, const RecordingHeader& header) {
     check_name(checkpoint_path(path) + ".partial");
-    RecordingWriter writer(recording::File(path, recording::File::Mode::create), header);
+    RecordingWriter writer(recording::RecordingFile(path, recording::RecordingFile::Mode::create), header);
     // The checkpoint of an earlier recording at this path must not be resumed with the new one.
     recording::remove_if_exists(checkpoint_path(path));
     sync_folder_of(path);
@@ -62,7 +62,7 @@ RecordingWriter RecordingWriter::create(const std::string& path, const Recording
 }
 
 RecordingWriter RecordingWriter::resume(const std::string& path, const RecordingHeader& header) {
-    RecordingWriter writer(recording::File(path, recording::File::Mode::update), header);
+    RecordingWriter writer(recording::RecordingFile(path, recording::RecordingFile::Mode::update), header);
     // After a kill during the write of the header, the checkpoint can be that of an earlier recording.
     if (const auto bytes = recording::encode(header); is_partial_header(writer.file_, bytes)) {
         recording::remove_if_exists(checkpoint_path(path));

@@ -45,13 +45,13 @@ public:
     const std::string& path() const { return file_.path(); }
 
 private:
-    RecordingWriter(recording::File file, const RecordingHeader& header);
+    RecordingWriter(recording::RecordingFile file, const RecordingHeader& header);
     std::uint64_t offset(std::size_t number) const;
     void cut_to(std::size_t frames);
     /// Throws InputError when one of the first `count` frames is damaged, since nothing checks them later.
     void check_frames(std::size_t count) const;
 
-    recording::File file_;
+    recording::RecordingFile file_;
     RecordingHeader header_;
     std::uint64_t header_bytes_ = 0;
     std::uint64_t frame_bytes_ = 0;

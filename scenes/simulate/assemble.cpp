@@ -22,14 +22,14 @@ std::vector<std::size_t> first_vertices(const Model& model) {
 }
 
 /// A fixed or deformable body has a node that no impulse moves, so that body numbers are node numbers.
-std::vector<Node> make_nodes(const Model& model, const Motion& motion) {
-    std::vector<Node> nodes(model.bodies.size());
+std::vector<MovedNode> make_nodes(const Model& model, const MotionState& motion) {
+    std::vector<MovedNode> nodes(model.bodies.size());
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
         const auto& body = model.bodies[i];
         const auto& soft = motion.soft[i];
         for (std::size_t v = 0; v < soft.velocities.size(); ++v)
             nodes.push_back({.velocity = soft.velocities[v], .inverse_mass = body.elastic.inverse_masses[v]});
-        if (body.kind != Kind::rigid) continue;
+        if (body.kind != BodyKind::rigid) continue;
         const auto& rigid = motion.rigid[i];
         nodes[i] = {rigid.velocity, spin(body, rigid), 1 / body.mass.mass,
                     world_inverse_inertia(body, rigid)};
@@ -59,7 +59,7 @@ std::array<double, 4> weights_of(const std::array<Eigen::Vector3d, 4>& corners,
 
 class Assembler {
 public:
-    Assembler(const Model& model, const Motion& before, const Motion& free)
+    Assembler(const Model& model, const MotionState& before, const MotionState& free)
         : model_(model), before_(before), first_(first_vertices(model)) {
         problem_.nodes = make_nodes(model, before);
         free_ = make_nodes(model, free);
@@ -76,9 +76,11 @@ public:
 private:
     bool is_relevant(const Pair& pair) const {
         const auto a = model_.bodies[pair.body_a].kind, b = model_.bodies[pair.body_b].kind;
-        if (!model_.dynamics->stepping.couple_contacts && (a == Kind::soft || b == Kind::soft)) return false;
+        if (!model_.dynamics->stepping.couple_contacts && (a == BodyKind::soft || b == BodyKind::soft))
+            return false;
         // A rigid body cannot push itself.
-        return (a != Kind::fixed || b != Kind::fixed) && (pair.body_a != pair.body_b || a == Kind::soft);
+        return (a != BodyKind::fixed || b != BodyKind::fixed)
+               && (pair.body_a != pair.body_b || a == BodyKind::soft);
     }
 
     void add(const ContactPoint& contact, std::uint32_t source) {
@@ -99,12 +101,12 @@ private:
         problem_.sources.push_back(source);
     }
 
-    void attach(std::uint32_t body, std::uint32_t tet, const Eigen::Vector3d& point, Side& side,
+    void attach(std::uint32_t body, std::uint32_t tet, const Eigen::Vector3d& point, RowSide& side,
                 Eigen::Vector3d& arm) {
         arm = Eigen::Vector3d::Zero();
         side = {body, false};
-        if (model_.bodies[body].kind == Kind::rigid) arm = point - before_.rigid[body].centre;
-        if (model_.bodies[body].kind != Kind::soft) return;
+        if (model_.bodies[body].kind == BodyKind::rigid) arm = point - before_.rigid[body].centre;
+        if (model_.bodies[body].kind != BodyKind::soft) return;
         const auto& tetrahedron = model_.scene->meshes[model_.scene->bodies[body].mesh].tetrahedra[tet];
         Attachment attachment;
         std::array<Eigen::Vector3d, 4> corners;
@@ -119,7 +121,7 @@ private:
 
     /// True when an impulse moves the side: not for fixed bodies, nor when all corners with weight are
     /// pinned.
-    bool movable(const Side& side) const {
+    bool movable(const RowSide& side) const {
         bool result = false;
         for_each_node(problem_, side, Eigen::Vector3d::Zero(),
                       [&](std::uint32_t node, double weight, const Eigen::Vector3d&) {
@@ -129,15 +131,15 @@ private:
     }
 
     const Model& model_;
-    const Motion& before_;
+    const MotionState& before_;
     std::vector<std::size_t> first_;
     Problem problem_;
-    std::vector<Node> free_;
+    std::vector<MovedNode> free_;
 };
 
 } // namespace
 
-Problem make_problem(const Model& model, const Motion& before, const Motion& free,
+Problem make_problem(const Model& model, const MotionState& before, const MotionState& free,
                      std::span<const ContactPoint> contacts) {
     return Assembler(model, before, free).run(contacts);
 }

@@ -96,15 +96,15 @@ void clock_state(Visitor& visit, Time& clock) {
 template<class Visitor, class Moving>
 void bodies(Visitor& visit, const Model& model, Moving& motion) {
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
-        if (model.bodies[i].kind == Kind::rigid) rigid_state(visit, motion.rigid[i]);
-        if (model.bodies[i].kind == Kind::soft) soft_state(visit, motion.soft[i]);
+        if (model.bodies[i].kind == BodyKind::rigid) rigid_state(visit, motion.rigid[i]);
+        if (model.bodies[i].kind == BodyKind::soft) soft_state(visit, motion.soft[i]);
     }
     visit(motion.length);
 }
 
 } // namespace
 
-std::vector<std::byte> to_bytes(const Model& model, const Motion& motion, const Clock& clock) {
+std::vector<std::byte> to_bytes(const Model& model, const MotionState& motion, const Clock& clock) {
     Writer write;
     write(version);
     write(model.scene->digest);
@@ -115,7 +115,7 @@ std::vector<std::byte> to_bytes(const Model& model, const Motion& motion, const 
     return write.take();
 }
 
-void from_bytes(const Model& model, std::span<const std::byte> bytes, Motion& motion, Clock& clock) {
+void from_bytes(const Model& model, std::span<const std::byte> bytes, MotionState& motion, Clock& clock) {
     Reader read(bytes);
     std::uint64_t found = 0, digest = 0, impulses = 0;
     read(found);
@@ -126,7 +126,7 @@ void from_bytes(const Model& model, std::span<const std::byte> bytes, Motion& mo
             fmt::format("the saved state belongs to a scene of digest {:016x}, not to '{}' ({:016x})", digest,
                         model.scene->name, model.scene->digest));
     // Allocates the states. The arguments change only when everything was read.
-    Motion result = starting_motion(model);
+    MotionState result = starting_motion(model);
     Clock time;
     clock_state(read, time);
     bodies(read, model, result);

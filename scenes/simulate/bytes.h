@@ -17,10 +17,10 @@ struct Clock {
 };
 
 /// Serialises motion and clock in the machine's byte order, after a version and the scene's digest.
-std::vector<std::byte> to_bytes(const Model& model, const Motion& motion, const Clock& clock);
+std::vector<std::byte> to_bytes(const Model& model, const MotionState& motion, const Clock& clock);
 
 /// Reads the output of to_bytes. Throws InputError when version, byte order, scene or size differ; `motion`
 /// and `clock` are then unchanged.
-void from_bytes(const Model& model, std::span<const std::byte> bytes, Motion& motion, Clock& clock);
+void from_bytes(const Model& model, std::span<const std::byte> bytes, MotionState& motion, Clock& clock);
 
 } // namespace tandem::simulate

@@ -45,12 +45,12 @@ void add(Energies& sum, const Energies& part) {
 }
 
 /// Diagonal (m) of the box around all moving bodies.
-double extent(const Model& model, const Motion& motion) {
+double extent(const Model& model, const MotionState& motion) {
     Eigen::AlignedBox3d box;
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
         for (const auto& p : motion.soft[i].positions) box.extend(p);
         const Eigen::Vector3d half = Eigen::Vector3d::Constant(model.bodies[i].size);
-        if (model.bodies[i].kind != Kind::rigid) continue;
+        if (model.bodies[i].kind != BodyKind::rigid) continue;
         box.extend(motion.rigid[i].centre - half);
         box.extend(motion.rigid[i].centre + half);
     }
@@ -66,20 +66,20 @@ double mass_of(const BodyModel& body) {
 
 } // namespace
 
-Energies energies_of(const Model& model, const Motion& motion, std::size_t body) {
+Energies energies_of(const Model& model, const MotionState& motion, std::size_t body) {
     const auto& kind = model.bodies[body];
-    if (kind.kind == Kind::rigid) return rigid_energies(model, motion.rigid[body], kind);
-    if (kind.kind == Kind::soft) return soft_energies(model, motion.soft[body], kind.elastic);
+    if (kind.kind == BodyKind::rigid) return rigid_energies(model, motion.rigid[body], kind);
+    if (kind.kind == BodyKind::soft) return soft_energies(model, motion.soft[body], kind.elastic);
     return {};
 }
 
-double total_energy(const Model& model, const Motion& motion) {
+double total_energy(const Model& model, const MotionState& motion) {
     Energies sum;
     for (std::size_t i = 0; i < model.bodies.size(); ++i) add(sum, energies_of(model, motion, i));
     return sum.total();
 }
 
-Energies checked_energies(const Model& model, const Motion& motion, std::size_t step) {
+Energies checked_energies(const Model& model, const MotionState& motion, std::size_t step) {
     Energies sum;
     Energies most;
     std::size_t fastest = 0;
@@ -100,14 +100,14 @@ Energies checked_energies(const Model& model, const Motion& motion, std::size_t 
     return sum;
 }
 
-double highest_energy(const Model& model, const Motion& start) {
+double highest_energy(const Model& model, const MotionState& start) {
     const auto& dynamics = *model.dynamics;
     const double fall = length(dynamics.gravity) * extent(model, start);
     double total = 0;
     double reach = 0;
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
         const auto& body = model.bodies[i];
-        if (body.kind == Kind::fixed) continue;
+        if (body.kind == BodyKind::fixed) continue;
         const auto part = energies_of(model, start, i);
         // Velocity of the largest correction of a penetration in one step.
         const double correction = greatest_correction * body.size / dynamics.stepping.step;

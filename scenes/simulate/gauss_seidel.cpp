@@ -19,7 +19,7 @@ double sweep(Problem& problem, double scale) {
     return most;
 }
 
-void undo(Problem& problem, std::vector<Node>& accepted) {
+void undo(Problem& problem, std::vector<MovedNode>& accepted) {
     problem.nodes = accepted;
     for (auto& row : problem.rows) row.impulse = row.previous;
 }

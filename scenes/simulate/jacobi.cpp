@@ -151,7 +151,7 @@ private:
     const SolverSettings& settings_;
     Convergence convergence_;
     Touches touches_;
-    std::vector<Node> free_;
+    std::vector<MovedNode> free_;
     std::vector<double> changes_; ///< one a thread
     std::barrier<> barrier_;
     SolveReport report_{.converged = false};

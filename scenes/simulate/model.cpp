@@ -128,12 +128,12 @@ BodyModel make_body(const Model& model, std::size_t i) {
     result.size = longest_edge(mesh);
     if (body.fixed) return result;
     if (body.deformable) {
-        result.kind = Kind::soft;
+        result.kind = BodyKind::soft;
         result.elastic = make_elastic_mesh(
             mesh, model.dynamics->elastics[static_cast<std::size_t>(dynamics.elastic)], density);
         return result;
     }
-    result.kind = Kind::rigid;
+    result.kind = BodyKind::rigid;
     result.mass = mass_properties(mesh, density);
     result.inverse_inertia = adjugate(result.mass.inertia) / determinant(result.mass.inertia);
     return result;
@@ -141,7 +141,7 @@ BodyModel make_body(const Model& model, std::size_t i) {
 
 /// Smallest mass in kg of the body or its vertices. Pinned vertices count too.
 double least_mass(const BodyModel& body) {
-    return body.kind == Kind::rigid
+    return body.kind == BodyKind::rigid
                ? body.mass.mass
                : *std::min_element(body.elastic.masses.begin(), body.elastic.masses.end());
 }
@@ -152,7 +152,7 @@ void set_scales(Model& model) {
     model.lightest = model.smallest = none;
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
         const auto& body = model.bodies[i];
-        if (body.kind == Kind::fixed) continue;
+        if (body.kind == BodyKind::fixed) continue;
         const auto& dynamics = model.dynamics->bodies[i];
         model.lightest = std::min(model.lightest, least_mass(body));
         model.smallest = std::min(model.smallest, body.size);

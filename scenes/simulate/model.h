@@ -8,11 +8,11 @@
 
 namespace tandem::simulate {
 
-enum class Kind { fixed, rigid, soft };
+enum class BodyKind { fixed, rigid, soft };
 
 /// Constant properties of a body.
 struct BodyModel {
-    Kind kind = Kind::fixed;
+    BodyKind kind = BodyKind::fixed;
     std::uint32_t material = 0;
     double size = 0;                                           ///< m, longest edge of the mesh's box
     MassProperties mass;                                       ///< rigid bodies only

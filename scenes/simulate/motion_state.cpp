@@ -56,54 +56,55 @@ void kick_soft(const ElasticMesh& mesh, SoftState& state, const Eigen::Vector3d&
 
 } // namespace
 
-Motion starting_motion(const Model& model) {
-    Motion motion;
+MotionState starting_motion(const Model& model) {
+    MotionState motion;
     motion.rigid.resize(model.bodies.size());
     motion.soft.resize(model.bodies.size());
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
         const auto& body = model.bodies[i];
         const auto& dynamics = model.dynamics->bodies[i];
-        if (body.kind == Kind::rigid) motion.rigid[i] = starting_rigid(body, dynamics, model.start.poses[i]);
-        if (body.kind == Kind::soft)
+        if (body.kind == BodyKind::rigid)
+            motion.rigid[i] = starting_rigid(body, dynamics, model.start.poses[i]);
+        if (body.kind == BodyKind::soft)
             motion.soft[i] = starting_soft(body.elastic, dynamics, model.start.deformed[i]);
     }
     return motion;
 }
 
-void drift(const Model& model, Motion& motion, double time) {
+void drift(const Model& model, MotionState& motion, double time) {
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
         auto& soft = motion.soft[i];
         for (std::size_t v = 0; v < soft.positions.size(); ++v)
             soft.positions[v] += time * soft.velocities[v];
-        if (model.bodies[i].kind != Kind::rigid) continue;
+        if (model.bodies[i].kind != BodyKind::rigid) continue;
         auto& rigid = motion.rigid[i];
         rigid.centre += time * rigid.velocity;
         turn_on(model.bodies[i], rigid, time);
     }
 }
 
-void kick(const Model& model, Motion& motion, double time) {
+void kick(const Model& model, MotionState& motion, double time) {
     const auto& dynamics = *model.dynamics;
     // Damping is implicit, so that no coefficient reverses a velocity.
     const double linear = 1 / (1 + time * dynamics.stepping.linear_damping);
     const double angular = 1 / (1 + time * dynamics.stepping.angular_damping);
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
-        if (model.bodies[i].kind == Kind::soft)
+        if (model.bodies[i].kind == BodyKind::soft)
             kick_soft(model.bodies[i].elastic, motion.soft[i], dynamics.gravity, time);
-        if (model.bodies[i].kind != Kind::rigid) continue;
+        if (model.bodies[i].kind != BodyKind::rigid) continue;
         auto& rigid = motion.rigid[i];
         rigid.velocity = linear * (rigid.velocity + time * dynamics.gravity);
         rigid.angular *= angular;
     }
 }
 
-Frame frame_of(const Model& model, const Motion& motion) {
+Frame frame_of(const Model& model, const MotionState& motion) {
     Frame frame = model.start;
     frame.deformed.resize(model.bodies.size());
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
         const auto& body = model.bodies[i];
-        if (body.kind == Kind::soft) frame.deformed[i] = motion.soft[i].positions;
-        if (body.kind != Kind::rigid) continue;
+        if (body.kind == BodyKind::soft) frame.deformed[i] = motion.soft[i].positions;
+        if (body.kind != BodyKind::rigid) continue;
         const auto& state = motion.rigid[i];
         frame.poses[i] = {state.rotation, state.centre - rotated(state.rotation, body.mass.centre)};
     }

@@ -29,7 +29,7 @@ struct Impulse {
 };
 
 /// The complete input of the next step.
-struct Motion {
+struct MotionState {
     std::vector<RigidState> rigid; ///< one a body; undefined unless the body is rigid
     std::vector<SoftState> soft;   ///< one a body; empty unless deformable
     std::vector<Impulse> impulses; ///< in the order of reduce_contacts; empty unless warm_start
@@ -37,17 +37,17 @@ struct Motion {
 };
 
 /// The motion at frame 0: velocities of the dynamics, no impulses.
-Motion starting_motion(const Model& model);
+MotionState starting_motion(const Model& model);
 
 /// Advances positions by `time` (s) of free motion; velocities and momenta do not change.
-void drift(const Model& model, Motion& motion, double time);
+void drift(const Model& model, MotionState& motion, double time);
 
 /// Advances velocities by `time` (s) of gravity, damping and elastic forces at the present positions.
-void kick(const Model& model, Motion& motion, double time);
+void kick(const Model& model, MotionState& motion, double time);
 
 /// Poses of rigid bodies about the mesh's origin and vertices of deformable bodies. Fixed bodies have their
 /// initial pose.
-Frame frame_of(const Model& model, const Motion& motion);
+Frame frame_of(const Model& model, const MotionState& motion);
 
 /// R I^-1 R', 1 / (kg m^2).
 Eigen::Matrix3d world_inverse_inertia(const BodyModel& body, const RigidState& state);
@@ -61,18 +61,18 @@ struct Energies {
     double total() const { return kinetic + potential + elastic; }
 };
 /// Energies of one body; all zero for a fixed body.
-Energies energies_of(const Model& model, const Motion& motion, std::size_t body);
+Energies energies_of(const Model& model, const MotionState& motion, std::size_t body);
 
 /// Sum of all energies of all bodies, J.
-double total_energy(const Model& model, const Motion& motion);
+double total_energy(const Model& model, const MotionState& motion);
 
 /// Energies of all bodies by kind. Throws InputError with `step`, the body and its values when one is not
 /// finite or the sum exceeds model.highest_energy.
-Energies checked_energies(const Model& model, const Motion& motion, std::size_t step);
+Energies checked_energies(const Model& model, const MotionState& motion, std::size_t step);
 
 /// Upper limit of the total energy, J: the initial total plus ten times the sum of three terms. They are the
 /// initial kinetic and elastic energy, a fall through the extent of all bodies, and the largest corrections
 /// of penetration in one step.
-double highest_energy(const Model& model, const Motion& start);
+double highest_energy(const Model& model, const MotionState& start);
 
 } // namespace tandem::simulate

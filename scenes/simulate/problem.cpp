@@ -13,7 +13,7 @@ Eigen::Vector3d Problem::attached_velocity(const Attachment& attachment) const {
     return sum;
 }
 
-void Problem::push(const Side& side, const Eigen::Vector3d& arm, const Eigen::Vector3d& impulse) {
+void Problem::push(const RowSide& side, const Eigen::Vector3d& arm, const Eigen::Vector3d& impulse) {
     if (side.attached) {
         const auto& attachment = attachments[side.index];
         for (std::size_t i = 0; i < 4; ++i) {
@@ -39,7 +39,7 @@ namespace {
 
 /// Change of a point's velocity by unit impulses at one side: the 3x3 block of Delassus' operator. `counts`,
 /// when not empty, divides each node's mass.
-Eigen::Matrix3d mobility(const Problem& problem, const Side& side, const Eigen::Vector3d& arm,
+Eigen::Matrix3d mobility(const Problem& problem, const RowSide& side, const Eigen::Vector3d& arm,
                          std::span<const double> counts) {
     Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
     for_each_node(problem, side, arm, [&](std::uint32_t index, double weight, const Eigen::Vector3d& lever) {
@@ -90,7 +90,7 @@ void set_factors(Problem& problem, bool split) {
                                  + mobility(problem, row.b, row.arm_b, counts));
 }
 
-void add_impulses(const Model& model, const Problem& problem, Motion& motion) {
+void add_impulses(const Model& model, const Problem& problem, MotionState& motion) {
     std::vector<Eigen::Vector3d> linear(problem.nodes.size(), Eigen::Vector3d::Zero());
     std::vector<Eigen::Vector3d> angular = linear;
     for (const auto& row : problem.rows) {
@@ -104,7 +104,7 @@ void add_impulses(const Model& model, const Problem& problem, Motion& motion) {
     }
     auto vertex = model.bodies.size();
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
-        if (model.bodies[i].kind == Kind::rigid) {
+        if (model.bodies[i].kind == BodyKind::rigid) {
             motion.rigid[i].velocity += linear[i] / model.bodies[i].mass.mass;
             motion.rigid[i].angular += angular[i];
         }

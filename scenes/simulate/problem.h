@@ -10,7 +10,7 @@ namespace tandem::simulate {
 
 /// An object that impulses move: a rigid body, or a vertex of a deformable body, which has no inertia and no
 /// spin. Objects that do not move have an inverse mass of 0.
-struct Node {
+struct MovedNode {
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero(); ///< m/s, including the present impulses
     Eigen::Vector3d spin = Eigen::Vector3d::Zero();     ///< rad/s
     double inverse_mass = 0;
@@ -24,7 +24,7 @@ struct Attachment {
 };
 
 /// One side of a contact: a node, or an attachment when `attached`.
-struct Side {
+struct RowSide {
     std::uint32_t index = 0;
     bool attached = false;
 };
@@ -41,18 +41,18 @@ struct ContactRow {
     double friction = 0;
     double factor_normal = 0, factor_tangent = 0; ///< r-factors, kg
     double mixed_tangent = 0, mixed_binormal = 0; ///< 1/kg, effect of a normal impulse along the tangents
-    Side a, b;
+    RowSide a, b;
 };
 
 /// All contacts of a step in the form that the solvers use.
 struct Problem {
-    std::vector<Node> nodes;
+    std::vector<MovedNode> nodes;
     std::vector<Attachment> attachments;
     std::vector<ContactRow> rows;
     std::vector<std::uint32_t> sources; ///< one a row: the index of its contact
 
     /// Velocity of the point of a side.
-    Eigen::Vector3d velocity(const Side& side, const Eigen::Vector3d& arm) const {
+    Eigen::Vector3d velocity(const RowSide& side, const Eigen::Vector3d& arm) const {
         if (side.attached) return attached_velocity(attachments[side.index]);
         const auto& node = nodes[side.index];
         return {node.velocity.x() + (node.spin.y() * arm.z() - node.spin.z() * arm.y()),
@@ -64,7 +64,7 @@ struct Problem {
         return velocity(row.b, row.arm_b) - velocity(row.a, row.arm_a);
     }
     /// Applies an impulse (N s) to one side of a contact.
-    void push(const Side& side, const Eigen::Vector3d& arm, const Eigen::Vector3d& impulse);
+    void push(const RowSide& side, const Eigen::Vector3d& arm, const Eigen::Vector3d& impulse);
     void push(const ContactRow& row, const Eigen::Vector3d& impulse) {
         push(row.a, row.arm_a, -impulse);
         push(row.b, row.arm_b, impulse);
@@ -81,7 +81,7 @@ inline Eigen::Vector3d world(const ContactRow& row, const Eigen::Vector3d& impul
 
 /// Calls visit(node, weight, arm) for the one or four nodes of a side.
 template<class Visit>
-void for_each_node(const Problem& problem, const Side& side, const Eigen::Vector3d& arm, Visit visit) {
+void for_each_node(const Problem& problem, const RowSide& side, const Eigen::Vector3d& arm, Visit visit) {
     if (!side.attached) return visit(side.index, 1.0, arm);
     const auto& attachment = problem.attachments[side.index];
     for (std::size_t i = 0; i < 4; ++i)
@@ -91,7 +91,7 @@ void for_each_node(const Problem& problem, const Side& side, const Eigen::Vector
 /// Rows of `contacts` at the positions of `before`. The velocities of `before` define the bounce; nodes get
 /// the velocities of `free`. Leaves out contacts that no impulse can change, and those of deformable bodies
 /// unless couple_contacts is set.
-Problem make_problem(const Model& model, const Motion& before, const Motion& free,
+Problem make_problem(const Model& model, const MotionState& before, const MotionState& free,
                      std::span<const ContactPoint> contacts);
 
 /// Sets the r-factors, 1 / A_ii (Erleben 2017, local strategy). `split` divides each node's mass among its
@@ -100,7 +100,7 @@ Problem make_problem(const Model& model, const Motion& before, const Motion& fre
 void set_factors(Problem& problem, bool split);
 
 /// Adds the rows' impulses to the motion's momenta.
-void add_impulses(const Model& model, const Problem& problem, Motion& motion);
+void add_impulses(const Model& model, const Problem& problem, MotionState& motion);
 
 /// Two tangents that complete `normal` to a right-handed orthonormal basis (Duff et al., "Building an
 /// orthonormal basis, revisited", J. Comput. Graph. Tech. 6(1), 2017).

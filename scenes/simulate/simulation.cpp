@@ -19,11 +19,11 @@ constexpr std::uint64_t passes_before_doubling = 10;
 bool adapts(const Model& model) {
     return model.dynamics->stepping.adaptive_tolerance > 0
            && std::any_of(model.bodies.begin(), model.bodies.end(),
-                          [](const BodyModel& body) { return body.kind == Kind::soft; });
+                          [](const BodyModel& body) { return body.kind == BodyKind::soft; });
 }
 
 /// Largest distance (m) between equal vertices of deformable bodies.
-double largest_difference(const Motion& a, const Motion& b) {
+double largest_difference(const MotionState& a, const MotionState& b) {
     double most = 0;
     for (std::size_t i = 0; i < a.soft.size(); ++i)
         for (std::size_t v = 0; v < a.soft[i].positions.size(); ++v)
@@ -32,7 +32,7 @@ double largest_difference(const Motion& a, const Motion& b) {
 }
 
 /// Adds energies to the report. `before` is the total energy (J) at the start of the step.
-void add_energies(const Model& model, const Motion& motion, double before, std::size_t step,
+void add_energies(const Model& model, const MotionState& motion, double before, std::size_t step,
                   StepReport& report) {
     const auto energies = checked_energies(model, motion, step);
     report.kinetic = energies.kinetic;
@@ -54,7 +54,7 @@ void add_times(StepReport& report, const StepReport& other) {
 
 struct Simulation::State {
     Model model;
-    Motion motion;
+    MotionState motion;
     Clock clock;
     Frame midway;
 
@@ -65,7 +65,7 @@ struct Simulation::State {
     }
 
     /// Halves the step until its end differs from that of two half steps by at most the tolerance.
-    Outcome adapted(const Detect& detect) {
+    StepOutcome adapted(const Detect& detect) {
         const auto& stepping = model.dynamics->stepping;
         auto full = advance(model, motion, clock.length, clock.steps, detect);
         bool first_try = true;

@@ -11,12 +11,12 @@ namespace tandem::simulate {
 
 namespace {
 
-void move_by(const Model& model, const Problem& problem, double time, Motion& motion) {
+void move_by(const Model& model, const Problem& problem, double time, MotionState& motion) {
     auto vertex = model.bodies.size();
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
         const auto& node = problem.nodes[i];
         for (auto& position : motion.soft[i].positions) position += time * problem.nodes[vertex++].velocity;
-        if (model.bodies[i].kind != Kind::rigid) continue;
+        if (model.bodies[i].kind != BodyKind::rigid) continue;
         motion.rigid[i].centre += time * node.velocity;
         motion.rigid[i].rotation = turned(motion.rigid[i].rotation, time * node.spin);
     }
@@ -44,8 +44,8 @@ SolverSettings position_solver(const Model& model, double time) {
 double pair_size(const Model& model, const Pair& pair) {
     const auto& a = model.bodies[pair.body_a];
     const auto& b = model.bodies[pair.body_b];
-    if (a.kind == Kind::fixed) return b.size;
-    if (b.kind == Kind::fixed) return a.size;
+    if (a.kind == BodyKind::fixed) return b.size;
+    if (b.kind == BodyKind::fixed) return a.size;
     return std::min(a.size, b.size);
 }
 
@@ -74,7 +74,7 @@ double settling(double depth, double layer, double time) {
 }
 
 double correct_positions(const Model& model, Problem problem, std::span<const ContactPoint> contacts,
-                         double half, Motion& motion) {
+                         double half, MotionState& motion) {
     for (std::size_t i = 0; i < problem.rows.size(); ++i) {
         auto& row = problem.rows[i];
         const auto& contact = contacts[problem.sources[i]];

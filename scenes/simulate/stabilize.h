@@ -30,6 +30,6 @@ double settling(double depth, double layer, double time);
 /// same contacts without friction for displacements. `motion` is at the end of the step, `half` is half its
 /// length (s). Returns the added potential energy, J.
 double correct_positions(const Model& model, Problem problem, std::span<const ContactPoint> contacts,
-                         double half, Motion& motion);
+                         double half, MotionState& motion);
 
 } // namespace tandem::simulate

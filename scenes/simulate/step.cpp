@@ -73,8 +73,8 @@ void allow_settling(const Model& model, std::span<const ContactPoint> kept, doub
 }
 
 /// The complete input of the solver. Sets `motion` to the velocities without contacts.
-Problem assemble(const Model& model, const Motion& from, std::span<const ContactPoint> kept, double length,
-                 Motion& motion) {
+Problem assemble(const Model& model, const MotionState& from, std::span<const ContactPoint> kept,
+                 double length, MotionState& motion) {
     const auto before = motion;
     kick(model, motion, length);
     auto problem = make_problem(model, before, motion, kept);
@@ -106,9 +106,9 @@ void check_contacts(const Model& model, std::span<const ContactPoint> contacts, 
     }
 }
 
-Outcome advance(const Model& model, const Motion& from, double length, std::size_t step,
-                const Detect& detect) {
-    Outcome outcome{from, {}, {}};
+StepOutcome advance(const Model& model, const MotionState& from, double length, std::size_t step,
+                    const Detect& detect) {
+    StepOutcome outcome{from, {}, {}};
     // Half a step of motion, then the contacts at midway.
     auto& [motion, midway, report] = outcome;
     report.length = length;

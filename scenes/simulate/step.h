@@ -7,8 +7,8 @@
 namespace tandem::simulate {
 
 /// Result of a step.
-struct Outcome {
-    Motion end;
+struct StepOutcome {
+    MotionState end;
     Frame midway;
     StepReport report; ///< without step, time and energies
 };
@@ -18,8 +18,8 @@ struct Outcome {
 /// contacts at midway, then half a step with the new velocities. Vertices of deformable bodies follow the
 /// same rule, which is symplectic Euler from midway to midway. Throws InputError with `step` for contacts out
 /// of order or impossible.
-Outcome advance(const Model& model, const Motion& from, double length, std::size_t step,
-                const Detect& detect);
+StepOutcome advance(const Model& model, const MotionState& from, double length, std::size_t step,
+                    const Detect& detect);
 
 /// Throws InputError unless contacts are in ascending order of (pair, feature), have existing bodies and
 /// tetrahedra, finite numbers and normals of length 1.

@@ -110,7 +110,7 @@ struct NormalCorrector {
 
 void set_surface_normals(const Model& model, const Frame& frame, std::span<ContactPoint> contacts) {
     constexpr std::size_t part = 256; // contacts a task
-    const auto deforms = [&](std::uint32_t body) { return model.bodies[body].kind == Kind::soft; };
+    const auto deforms = [&](std::uint32_t body) { return model.bodies[body].kind == BodyKind::soft; };
     const auto depths = deepest_of(contacts);
     parallel_for((contacts.size() + part - 1) / part, [&](std::size_t i) {
         NormalCorrector corrector{model, frame, depths, {}, {}};

@@ -15,7 +15,7 @@ struct Momenta {
     Eigen::Vector3d linear = Eigen::Vector3d::Zero(), angular = Eigen::Vector3d::Zero();
 };
 
-Momenta momenta(const simulate::Model& model, const simulate::Motion& motion) {
+Momenta momenta(const simulate::Model& model, const simulate::MotionState& motion) {
     Momenta sum;
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
         const auto& state = motion.rigid[i];

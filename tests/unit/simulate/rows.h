@@ -32,8 +32,8 @@ struct Beginning {
 
     const Scene& scene;
     simulate::Model model = simulate::make_model(scene);
-    simulate::Motion motion = simulate::starting_motion(model);
-    simulate::Motion free = motion;
+    simulate::MotionState motion = simulate::starting_motion(model);
+    simulate::MotionState free = motion;
     std::vector<ContactPoint> contacts;
 };
 
