@@ -9,19 +9,18 @@ import json
 import os
 import pathlib
 import shutil
-import signal
 import subprocess
 import tempfile
-import time
 import unittest
 
 os.environ.setdefault("MPLCONFIGDIR", tempfile.gettempdir())
 from tests.program import LONG, PROGRAM, SOURCE
+from tests.validate_records import problems_of_record
 
 from tandem.commands import paper as command
 from tandem.paper import claims, page
 from tandem.paper.folder import Folder
-from tandem.paper.measuring import MeasuredFolder, chosen, steps_of
+from tandem.paper.measuring import chosen, steps_of
 
 COMMITTED = SOURCE / "results/h200/paper"
 FILES = [
@@ -77,6 +76,8 @@ class Paper(unittest.TestCase):
             self.assertTrue(names(number), number)
 
     def test_bad_use_is_one_line(self):
+        other = pathlib.Path(self.work.name)
+        (other / "steps.jsonl").write_text("no JSON\n")
         for words, says in (
             ((), "--output"),
             (("-o", self.folder, "--size", "huge"), "--size huge: give small or full"),
@@ -88,6 +89,10 @@ class Paper(unittest.TestCase):
             ((*self.host, "--steps", "1,figure99"), "figure99 is no step"),
             (("-o", self.folder, "--draw-only", "--again"), "--again"),
             (("-o", self.folder / "none", "--draw-only"), "steps.jsonl"),
+            (
+                ("-o", other, "--device", "host", "--dry-run"),
+                "steps.jsonl:1: is not a line of 'tandem paper'",
+            ),
         ):
             error = paper(*words, code=2).stderr
             self.assertEqual(error.count("\n"), 1, error)
@@ -132,60 +137,19 @@ class Paper(unittest.TestCase):
         self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
         self.assertEqual([s["exit"] for s in self.steps()], [0])
 
-    def test_a_journal_keeps_whole_lines(self):
-        step = self.number("chunks-morton")
-        paper(*self.host, "--steps", step, "--measure-only")
-        journal, whole = self.folder / "steps.jsonl", (self.folder / "steps.jsonl").read_text()
-        journal.write_text(whole + '{"step": "half')
-        paper(*self.host, "--steps", step, "--measure-only")
-        self.assertEqual(
-            (journal.read_text(), (self.folder / "steps.jsonl.torn").read_text()), (whole, '{"step": "half\n')
-        )
-        journal.write_text("no JSON\n")
-        self.assertIn(
-            "steps.jsonl:1: is not a line of 'tandem paper'", paper(*self.host, "--dry-run", code=2).stderr
-        )
-
     def test_a_failing_step_is_reported_and_stops_no_other(self):
         first = self.number("glb-tower")  # needs a recording that does not exist
         last = int(first) + 1
         error = paper(*self.host, "--steps", f"{first}:{last}", code=3).stderr
-        self.assertIn("step glb-tower ended with 2", error)
-        self.assertEqual([s["exit"] for s in self.steps()], [2, 0])
+        self.assertIn("step glb-tower did not run: tower.frames is missing; step sim-tower makes it", error)
+        self.assertEqual([s["exit"] for s in self.steps()], [3, 0])
+        self.assertEqual([error for step in self.steps() for error in problems_of_record(step, "paper")], [])
         for name in FILES:
             self.assertTrue((self.folder / name).stat().st_size > 0, name)
         page = (self.folder / "index.html").read_text()
-        self.assertIn("Step glb-tower ended with 2", page)
+        self.assertIn("Step glb-tower ended with 3: Figure 6: tower. tower.frames is missing", page)
         self.assertIn("plates", (self.folder / "figure6.csv").read_text())
         self.assertIn("missing", (self.folder / "figure7.csv").read_text())
-
-    def test_a_simulation_resumes_from_its_checkpoint(self):
-        [step] = [step for step in steps_of("small", "host") if step.name == "sim-tower"]
-        folder = MeasuredFolder(self.folder, "small", "host", PROGRAM)
-        self.assertNotIn("--resume", folder.words(step))
-        (self.folder / "tower.frames.checkpoint").touch()
-        self.assertEqual(folder.words(step)[-1], "--resume")
-
-    @unittest.skipUnless(LONG, "simulates")
-    def test_a_simulation_resumes_after_a_signal(self):
-        step = self.number("sim-tower")
-        running = subprocess.Popen(
-            [PROGRAM, "paper", *map(str, self.host), "--steps", step, "--measure-only"],
-            stderr=subprocess.PIPE,
-            text=True,
-        )
-        recording = self.folder / "tower.frames.checkpoint"
-        while not recording.exists() and running.poll() is None:
-            time.sleep(0.05)
-        running.send_signal(signal.SIGTERM)
-        self.assertIn("interrupted", running.communicate()[1])
-        self.assertEqual(running.returncode, 143)
-        paper(*self.host, "--steps", step, "--measure-only")
-        self.assertEqual(self.steps()[-1]["exit"], 0)
-        lines = [
-            json.loads(line) for line in (self.folder / "records/sim-tower.jsonl").read_text().splitlines()
-        ]
-        self.assertEqual(sorted({line["step"] for line in lines if line["kind"] == "step"}), list(range(150)))
 
     def equal_files(self, names):
         for name in names:

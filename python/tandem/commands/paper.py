@@ -171,15 +171,18 @@ def _make(options, program):
         return draw(options.output)
     steps = measuring.steps_of(options.size, options.device)
     numbers = measuring.chosen(options.steps, steps)
-    folder = measuring.MeasuredFolder(options.output, options.size, options.device, program)
+    runner = measuring.measured_folder(options.output, options.size, options.device, program)
     if options.dry_run:
-        measuring.list_steps(folder, steps)
+        measuring.list_steps(runner, steps)
         return 0
     if options.again:
         for number in numbers:
-            folder.forget(steps[number])
-    worst = measuring.run_steps(folder, steps, numbers)
-    if options.measure_only or folder.interrupted:
+            runner.forget(steps[number])
+    failed = runner.run(steps, numbers)
+    if runner.interrupted:
+        return 128 + runner.interrupted
+    worst = max((1 if code == 1 else 3 for code in failed), default=0)
+    if options.measure_only:
         return worst
     return 3 if draw(options.output) else worst
 

@@ -170,9 +170,10 @@ def methods_html(folder):
 
 def gaps(folder):
     """List items for failed steps, for records that failed or are wrong, and for disturbed records."""
+    failed = [(name, folder.steps[name]) for name in folder.failed]
     texts = [
-        f"Step {name} ended with {folder.steps[name]['exit']}: {folder.steps[name]['says']}."
-        for name in folder.failed
+        f"Step {name} ended with {step['exit']}: {step['says']}. {step.get('reason', '')}".strip()
+        for name, step in failed
     ]
     texts += [f"{location}: {message}." for location, message in folder.wrong()]
     texts += [
