@@ -1,21 +1,23 @@
 # SPDX-License-Identifier: MIT
 # test: cost=10
 """tandem.sequences over a program that fails, waits and writes as it is told: its journal, progress, limits and
-needs."""
+needs; and the steps of scripts/gpu/run, whose cells the program lists."""
 
 import json
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
 import tempfile
 import unittest
 
-from tests.program import SOURCE, ran
+from tests.program import PROGRAM, SOURCE, ran
 
 sys.path.insert(0, str(SOURCE / "python"))
 from tandem.sequences.needs import Machine
+from tandem.sequences.step import read_steps
 
 # `say WORDS` prints, `fail` fails unless the file "mended" exists, `wait` writes "begun" and waits, and ignores
 # SIGTERM if it is told to, `simulate -o FILE` writes the file and its checkpoint.
@@ -232,3 +234,22 @@ class Sequences(unittest.TestCase):
         )
         journal.write_text(f"{whole}no JSON\n")
         self.assertIn("steps.jsonl:2: is not a line of a journal of steps", self.call("one", code=2)[0])
+
+
+class GpuSteps(unittest.TestCase):
+    def test_they_are_listed_and_the_program_knows_their_cells(self):
+        """The program lists the cells with its own device in place of GPUs. Needs are of known kinds."""
+        done = ran([SOURCE / "scripts/gpu/run"])
+        self.assertEqual(done.returncode, 2)
+        self.assertRegex(done.stdout, r"(?m)^ +\d+ +tests +510 s +unit, hard and conformance tests")
+        steps, machine = read_steps(SOURCE / "scripts/gpu/steps.json", {}), Machine(PROGRAM, SOURCE)
+        self.assertEqual(len({step.name for step in steps}), len(steps))
+        for need in {need for step in steps for need in step.needs}:
+            machine.missing(need)
+        runs = [step for step in steps if step.command[:2] == ("tandem", "run")]
+        self.assertGreater(len(runs), 40)
+        for step in runs:
+            words = re.sub(r" --(out|memory) \S+| --resume|,cubql", "", " ".join(step.command[1:]))
+            words = re.sub(r"\b(cuda|opencl):\d\S*", "host", re.sub(r"\S+\.frames", "plates", words))
+            done = ran([PROGRAM, *words.split(), "--dry-run"])
+            self.assertEqual(done.returncode, 0, (step.name, done.stderr))
