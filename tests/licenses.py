@@ -104,7 +104,7 @@ class Licenses(unittest.TestCase):
         self.assertEqual({name.split("/")[0] for name in copied}, {"chart.js", "three"})
         texts = [
             " ".join((SOURCE / name).read_text().split())
-            for name in ("NOTICE.md", "python/tandem/report/page/page.html")
+            for name in ("NOTICE.md", "python/tandem/report/page/licences.html")
         ]
         for owner in ("Chart.js Contributors", "three.js authors", "Jukka Kurkela"):
             self.assertTrue(all(owner in text for text in texts), owner)

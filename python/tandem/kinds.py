@@ -7,6 +7,7 @@ import json
 from . import lines
 
 SCHEMAS = {"cell": 4, "verdict": 4, "profile": 2, "simulation": 3, "ceilings": 1}
+WHAT_TO_GIVE = "give files that 'tandem run --out', 'profile --out', 'simulate --record' or 'devices --measure --out' wrote"
 CONVERT = "convert it with scripts/convert_records, which is installed as tandem-convert-records"
 _MARKS = {
     "profile_of": "profile",
@@ -26,12 +27,12 @@ def kind_of(record):
     return next((kind for field, kind in _MARKS.items() if field in record), None)
 
 
-def checked(text, location, what_to_give=lines.WHAT_TO_GIVE):
+def checked(text, location):
     """The kind and the record of the bytes of a line. Raises RecordError."""
-    record = lines.parsed(text, location, what_to_give)
+    record = lines.parsed(text, location, WHAT_TO_GIVE)
     kind = kind_of(record)
     if kind is None:
-        raise lines.RecordError(f"{location}: is no record of tandem; {what_to_give}")
+        raise lines.RecordError(f"{location}: is no record of tandem; {WHAT_TO_GIVE}")
     schema = record.get("schema")
     if kind == "cell":
         lines.checked_cell(record, location)
@@ -64,5 +65,5 @@ def fields_of(kind, location):
         raise
     except lines.FIELD_ERRORS as problem:
         raise lines.RecordError(
-            f"{location}: is no record of a {kind} ({problem!r}); {lines.WHAT_TO_GIVE}"
+            f"{location}: is no record of a {kind} ({problem!r}); {WHAT_TO_GIVE}"
         ) from None

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # test: cost=30 full=50
-"""Axe-core finds nothing serious or moderate on pages of `tandem report`: at
+"""Axe-core finds nothing serious or moderate on pages of `tandem report`, of `tandem paper` and of results by many: at
 1,400 pixels light and 390 pixels dark, in the long form light and dark at both, with all parts open. Skipped
 if scripts/setup could not fetch axe-core (tests/page-requirements.txt)."""
 
@@ -8,10 +8,11 @@ import json
 import unittest
 
 from tests.program import LONG, SOURCE
-from tests.report.case import RECORDS, ReportCase
+from tests.report.case import ReportCase
+from tests.script_case import called, loaded
 
 AXE = SOURCE / ".cache/pages/axe_playwright_python/axe.min.js"
-OPEN = "document.querySelectorAll('details').forEach(one => one.open = true); document.querySelector('#cell-table tbody button').click(); "
+OPEN = "document.querySelectorAll('details').forEach(one => one.open = true); "
 FINDINGS = (
     "axe.run(document, {resultTypes: ['violations']}).then(result => ({passes: result.passes.length, found: result.violations"
     ".filter(one => one.impact !== 'minor').map(one => `${one.impact} ${one.id}: ${one.nodes[0].html.slice(0, 200)}`)}))"
@@ -20,12 +21,13 @@ FINDINGS = (
 
 @unittest.skipUnless(AXE.is_file(), "no .cache/pages; scripts/setup fetches axe-core, with a network")
 class Access(ReportCase):
-    def check(self, page):
+    def check(self, page, beside=()):
         for width, height in ((1400, 900), (390, 844)):
             for dark in (False, True) if LONG else (width == 390,):
                 self.browser.size(width, height, mobile=width < 500)
                 self.browser.dark(dark)
-                self.opened(page)
+                self.browser.open(page)
+                self.assertEqual(self.browser.problems(beside), [])
                 self.browser.run(OPEN + AXE.read_text() + "; 1")
                 result = self.browser.run(FINDINGS)
                 self.assertEqual(result["found"], [], (width, dark))
@@ -47,6 +49,12 @@ class Access(ReportCase):
             path = SOURCE / f"{name}.jsonl"
             files.append(self.write(path.name, map(json.loads, path.read_text().splitlines()[:count])))
         self.check(self.report(*files, "--scene", "plates", "--frames", "20:22", "--contacts"))
+
+    def test_pages_without_scripts(self):
+        page = self.work / "results.html"
+        self.assertEqual(called(loaded("results-page"), "-o", page)[0], 0)
+        self.check(page)
+        self.check(SOURCE / "results/h200/paper/index.html", ["file:"])
 
     def test_a_page_with_a_comparison(self):
         old = self.write("old.jsonl", self.plan[:12])

@@ -7,138 +7,79 @@ import os
 import pathlib
 import shutil
 import signal
-import socket
-import struct
 import subprocess
 import tempfile
 import time
-import urllib.request
 
 
-class Socket:
-    """A web socket to one trusted server: text messages, one at a time (RFC 6455)."""
-
-    def __init__(self, port, path):
-        self.connection = socket.create_connection(("127.0.0.1", port), timeout=120)
-        key = base64.b64encode(os.urandom(16)).decode()
-        self.connection.sendall(
-            (
-                f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
-                f"Sec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n\r\n"
-            ).encode()
-        )
-        self.stream = self.connection.makefile("rb")
-        assert b"101" in self.stream.readline()
-        while self.stream.readline() != b"\r\n":
-            pass
-
-    def send(self, text):
-        data, mask = text.encode(), os.urandom(4)
-        size = len(data)
-        head = (
-            struct.pack("!BB", 0x81, 0x80 | size)
-            if size < 126
-            else struct.pack("!BBH", 0x81, 0xFE, size)
-            if size < 65536
-            else struct.pack("!BBQ", 0x81, 0xFF, size)
-        )
-        self.connection.sendall(head + mask + bytes(byte ^ mask[i % 4] for i, byte in enumerate(data)))
-
-    def receive(self):
-        whole = b""
-        while True:
-            first, second = self.stream.read(2)
-            size = second & 0x7F
-            if size > 125:
-                size = struct.unpack(
-                    "!H" if size == 126 else "!Q", self.stream.read(2 if size == 126 else 8)
-                )[0]
-            data = self.stream.read(size)
-            if first & 0x0F in (0, 1, 2):
-                whole += data
-                if first & 0x80:
-                    return whole.decode()
+PROGRAMS = ("chromium", "chromium-browser", "google-chrome")
+OPTIONS = """
+    --headless=new --no-sandbox --disable-dev-shm-usage --no-first-run --disable-extensions --mute-audio
+    --disable-background-networking --disable-component-update --hide-scrollbars --use-gl=angle
+    --use-angle=swiftshader --enable-unsafe-swiftshader --remote-debugging-pipe
+""".split()
+READY = "document.readyState === 'complete' && (!document.scripts.length || document.documentElement.dataset.ready)"
 
 
 class Browser:
-    """One Chromium with one page. Use as a context."""
+    """One Chromium with one page. Use as a context. Messages are JSON texts that end with a zero byte, in two
+    pipes, which Chromium has as files 3 and 4."""
 
     def __init__(self):
-        program = next(
-            (
-                found
-                for name in ("chromium", "chromium-browser", "google-chrome")
-                if (found := shutil.which(name))
-            ),
-            None,
-        )
+        program = next(filter(None, map(shutil.which, PROGRAMS)), None)
         if program is None:
             raise AssertionError("no chromium, which pages are tested in: scripts/setup installs it")
         self.home = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
-        self.log = open(pathlib.Path(self.home.name) / "log", "w")
-        self.process = subprocess.Popen(
-            [
-                program,
-                "--headless=new",
-                "--no-sandbox",
-                "--disable-dev-shm-usage",
-                "--no-first-run",
-                "--disable-extensions",
-                "--mute-audio",
-                "--disable-background-networking",
-                "--disable-component-update",
-                "--hide-scrollbars",
-                "--use-gl=angle",
-                "--use-angle=swiftshader",
-                "--enable-unsafe-swiftshader",
-                "--remote-debugging-port=0",
-                "--remote-allow-origins=*",
-                f"--user-data-dir={self.home.name}/profile",
-                "about:blank",
-            ],
-            stdout=self.log,
-            stderr=self.log,
-            start_new_session=True,
-        )
-        self.number, self.events = 0, []
-        self.socket = self.connect()
+        (read, write), (answers, answered) = os.pipe(), os.pipe()
+        words = [program, *OPTIONS, f"--user-data-dir={self.home.name}", "about:blank"]
+        with open(pathlib.Path(self.home.name) / "log", "w") as log:
+            self.process = subprocess.Popen(
+                ["bash", "-c", f'exec "$@" 3<&{read} 4>&{answered}', "bash", *words],
+                stdout=log,
+                stderr=log,
+                pass_fds=(read, answered),
+                start_new_session=True,
+            )
+        os.close(read)
+        os.close(answered)
+        self.questions, self.answers, self.received = open(write, "wb", 0), answers, b""
+        self.number, self.events, self.session = 0, [], {}
+        page = next(one for one in self.ask("Target.getTargets")["targetInfos"] if one["type"] == "page")
+        attached = self.ask("Target.attachToTarget", targetId=page["targetId"], flatten=True)
+        self.session = {"sessionId": attached["sessionId"]}
         for domain in ("Page", "Runtime", "Network", "Log"):
             self.ask(domain + ".enable")
-
-    def connect(self):
-        port_file = pathlib.Path(self.home.name) / "profile/DevToolsActivePort"
-        for _ in range(300):
-            if port_file.exists() and port_file.read_text().strip():
-                port = int(port_file.read_text().split()[0])
-                pages = json.load(urllib.request.urlopen(f"http://127.0.0.1:{port}/json/list", timeout=30))
-                page = next((page for page in pages if page["type"] == "page"), None)
-                if page:
-                    return Socket(port, page["webSocketDebuggerUrl"].split(str(port), 1)[1])
-            time.sleep(0.1)
-        raise AssertionError(
-            "chromium does not start: " + (pathlib.Path(self.home.name) / "log").read_text()[-2000:]
-        )
 
     def __enter__(self):
         return self
 
     def __exit__(self, *_):
-        self.socket.connection.close()
         os.killpg(self.process.pid, signal.SIGKILL)  # its own process group, with all children
         self.process.wait()
-        self.log.close()
+        self.questions.close()
+        os.close(self.answers)
         self.home.cleanup()
 
     def ask(self, method, **parameters):
         self.number += 1
-        self.socket.send(json.dumps({"id": self.number, "method": method, "params": parameters}))
+        message = {"id": self.number, "method": method, "params": parameters} | self.session
+        self.questions.write(json.dumps(message).encode() + b"\0")
         while True:
-            message = json.loads(self.socket.receive())
+            message = json.loads(self.receive())
             if message.get("id") == self.number:
                 if "error" in message:
                     raise AssertionError(f"{method}: {message['error']}")
                 return message["result"]
             self.events.append(message)
+
+    def receive(self):
+        while b"\0" not in self.received:
+            part = os.read(self.answers, 1 << 20)
+            if not part:
+                raise AssertionError("chromium ended")
+            self.received += part
+        message, _, self.received = self.received.partition(b"\0")
+        return message
 
     def run(self, script):
         """The value of an expression in the page, awaited."""
@@ -159,40 +100,29 @@ class Browser:
         raise AssertionError(f"never became true: {condition}")
 
     def open(self, path):
-        """Opens a file and returns the seconds until every row of its table is present."""
+        """Opens a page and returns the seconds until its images are loaded and its scripts have ended."""
         self.events.clear()
         begin = time.time()
         self.ask("Page.navigate", url=pathlib.Path(path).resolve().as_uri())
-        self.until(
-            "document.documentElement?.dataset.ready === 'true' && document.querySelector('#cell-table tbody')?.dataset.complete !== 'false'"
-        )
+        self.until(READY)
         self.run("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))")
         return time.time() - begin
 
-    def problems(self):
-        """Errors that the page logged, and requests for anything but the file."""
+    def problems(self, beside=()):
+        """Errors that the page logged, and requests for anything but the file and addresses that begin so."""
         self.run("1")
         texts = []
         for event in self.events:
             kind, what = event.get("method"), event.get("params", {})
-            if kind == "Runtime.exceptionThrown":
-                texts.append(
-                    what["exceptionDetails"]
-                    .get("exception", {})
-                    .get("description", what["exceptionDetails"]["text"])
-                )
-            elif kind == "Runtime.consoleAPICalled" and what["type"] in ("error", "assert"):
-                texts.append(
-                    str([argument.get("description", argument.get("value")) for argument in what["args"]])
-                )
+            if kind == "Runtime.exceptionThrown" or (
+                kind == "Runtime.consoleAPICalled" and what["type"] in ("error", "assert")
+            ):
+                texts.append(json.dumps(what)[:2000])
             elif kind == "Log.entryAdded" and what["entry"]["level"] == "error":
                 texts.append(what["entry"]["text"])
-            elif (
-                kind == "Network.requestWillBeSent"
-                and what["type"] != "Document"
-                and not what["request"]["url"].startswith(("data:", "blob:"))
-            ):
-                texts.append("a request of " + what["request"]["url"][:200])
+            elif kind == "Network.requestWillBeSent" and what["type"] != "Document":
+                if not what["request"]["url"].startswith(("data:", "blob:", *beside)):
+                    texts.append("a request of " + what["request"]["url"][:200])
         return texts
 
     def size(self, width, height, mobile=False):

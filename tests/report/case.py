@@ -1,23 +1,63 @@
 # SPDX-License-Identifier: MIT
-"""A test case whose pages of `tandem report` are opened in Chromium."""
+"""A test case whose pages of `tandem report` are opened in Chromium, and a reader of pages without one."""
 
+import html.parser
 import json
 
-from tests.report.browser import Browser
 from tests.program import SOURCE, Case, tandem
+from tests.report.browser import Browser
 
 RECORDS = SOURCE / "results/h200"
+CHOOSE = """(() => {{ const choice = [...document.querySelectorAll('#{} label')].find(one => one.textContent.startsWith({}))
+  .querySelector('select, input'); choice.value = {}; choice.dispatchEvent(new Event({})); }})()"""
 
 
-def short(record):
-    """The record with few samples, as most have."""
-    if isinstance(record, dict):
-        return {
-            name: short(value)
-            for name, value in record.items()
-            if name not in ("kernels", "chosen", "kernel_times")
-        }
-    return [short(value) for value in record[:10]] if isinstance(record, list) else record
+class Shown(html.parser.HTMLParser):
+    """rows: texts of the cells of each row of a page. words: all its texts but of scripts and styles. tags:
+    names of its elements. ids: texts of elements by id."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.rows, self.words, self.tags, self.data, self._open, self._is_in_cell = (
+            [],
+            "",
+            set(),
+            {},
+            "",
+            False,
+        )
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.add(tag)
+        self._open = dict(attrs).get("id", "") if tag in ("script", "style") else None
+        self._is_in_cell |= tag == "td"
+        if tag == "tr":
+            self.rows.append([])
+        elif tag == "td":
+            self.rows[-1].append("")
+
+    def handle_endtag(self, tag):
+        self._open = None
+        self._is_in_cell &= tag != "td"
+
+    def handle_data(self, data):
+        if self._open is not None:
+            self.data[self._open] = data
+            return
+        self.words += data
+        if self._is_in_cell:
+            self.rows[-1][-1] += data
+
+    def json(self, name="records"):
+        return json.loads(self.data[f"data-{name}"])
+
+
+def short(value, count=10, left_out=("kernels", "chosen", "kernel_times")):
+    """A record with few samples, as most have, and without those fields."""
+    if isinstance(value, dict):
+        return {name: short(one, count, left_out) for name, one in value.items() if name not in left_out}
+    return [short(one, count, left_out) for one in value[:count]] if isinstance(value, list) else value
 
 
 class ReportCase(Case):
@@ -26,8 +66,7 @@ class ReportCase(Case):
         super().setUpClass()
         cls.browser = Browser()
         cls.addClassCleanup(cls.browser.__exit__)
-        cls.lines = (RECORDS / "plan.jsonl").read_text().splitlines()
-        cls.plan = [short(json.loads(line)) for line in cls.lines]
+        cls.plan = [short(json.loads(line)) for line in (RECORDS / "plan.jsonl").read_text().splitlines()]
 
     def setUp(self):
         self.browser.size(1280, 900)
@@ -51,10 +90,25 @@ class ReportCase(Case):
         self.assertEqual(self.browser.problems(), [])
         return seconds
 
+    def shown(self, *arguments, **how):
+        """What a page shows, which is also opened."""
+        page = self.report(*arguments, **how)
+        self.opened(page)
+        return Shown(page.read_text())
+
     def draw(self, figure):
         """Scrolls to a chart, which draws it."""
         self.browser.run(f"document.getElementById('{figure}').scrollIntoView()")
         self.browser.until(f"document.getElementById('{figure}').dataset.drawn === 'true'")
 
+    def choose(self, part, label, value, event="change"):
+        """Gives a field of a part of the page, found by its label, a value."""
+        self.browser.run(CHOOSE.format(part, *map(json.dumps, (label, value, event))))
+
     def text(self, selector):
         return self.browser.run(f"document.querySelector({json.dumps(selector)}).textContent")
+
+    def texts(self, selector):
+        return self.browser.run(
+            f"[...document.querySelectorAll({json.dumps(selector)})].map(one => one.textContent)"
+        )

@@ -3,33 +3,24 @@
 """The scene on a page of `tandem view` in Chromium fills its box, and leaves
 scrolling to the page."""
 
+import colorsys
+
 from tests.program import tandem
 from tests.report.case import ReportCase
 
 CAMERA = "tandem.sceneView.camera.position.toArray().map(x => x.toFixed(4)).join()"
-# [left, right, bottom, top] of the pixels that differ from the background, as parts of the canvas.
-EXTENT = """(() => {
-  const c = document.getElementById('scene-canvas'), g = c.getContext('webgl2') || c.getContext('webgl');
-  tandem.sceneView.draw();
-  const pixels = new Uint8Array(4 * c.width * c.height);
-  g.readPixels(0, 0, c.width, c.height, g.RGBA, g.UNSIGNED_BYTE, pixels);
-  const words = new Uint32Array(pixels.buffer), box = [1e9, -1, 1e9, -1];
-  words.forEach((word, i) => {
-    if (word === words[0]) return;
-    const x = i % c.width, y = Math.floor(i / c.width);
-    box[0] = Math.min(box[0], x); box[1] = Math.max(box[1], x); box[2] = Math.min(box[2], y); box[3] = Math.max(box[3], y);
-  });
-  return [box[0] / c.width, (box[1] + 1) / c.width, box[2] / c.height, (box[3] + 1) / c.height];
-})()"""
-# {"r,g,b": number of pixels} without the background.
+# {"r,g,b": [number of pixels, left, right, bottom, top]} of the colours but the background, as parts of the canvas.
 COLOURS = """(() => {
   const c = document.getElementById('scene-canvas'), g = c.getContext('webgl2') || c.getContext('webgl');
   tandem.sceneView.draw();
   const pixels = new Uint8Array(4 * c.width * c.height), found = {};
   g.readPixels(0, 0, c.width, c.height, g.RGBA, g.UNSIGNED_BYTE, pixels);
-  for (let i = 0; i < pixels.length; i += 4) {
-    const name = pixels.slice(i, i + 3).join();
-    if (name !== pixels.slice(0, 3).join()) found[name] = (found[name] ?? 0) + 1;
+  const ground = pixels.slice(0, 3).join();
+  for (let i = 0; i < pixels.length / 4; ++i) {
+    const name = pixels.slice(4 * i, 4 * i + 3).join(), x = i % c.width / c.width, y = Math.floor(i / c.width) / c.height;
+    if (name === ground) continue;
+    const [n, left, right, bottom, top] = found[name] ?? [0, 1, 0, 1, 0];
+    found[name] = [n + 1, Math.min(left, x), Math.max(right, x + 1 / c.width), Math.min(bottom, y), Math.max(top, y + 1 / c.height)];
   }
   return found;
 })()"""
@@ -54,15 +45,42 @@ class Scenes(ReportCase):
         ):
             for width, height in ((1400, 900), (390, 844)):
                 self.view(scene, width, height)
-                left, right, bottom, top = self.browser.run(EXTENT)
-                self.assertGreater(max(right - left, top - bottom), 0.8, (scene, width))
-                self.assertTrue(
-                    left > 0 and right < 1 and bottom > 0 and top < 1,
-                    (scene, width, left, right, bottom, top),
-                )
+                _, left, right, bottom, top = zip(*self.browser.run(COLOURS).values())
+                extent = min(left), max(right), min(bottom), max(top)
+                self.assertGreater(max(extent[1] - extent[0], extent[3] - extent[2]), 0.8, (scene, width))
+                self.assertTrue(min(extent) > 0 and max(extent) < 1, (scene, width, extent))
+
+    def test_keys_buttons_and_choices(self):
+        self.view(("plates", "--frames", "20:23", "--contacts"), 1280, 900)
+        seen = [self.browser.run(CAMERA)]
+        self.browser.run("document.getElementById('scene-canvas').focus()")
+        self.browser.key("ArrowRight")
+        seen.append(self.browser.run(CAMERA))
+        x, y = self.browser.run(MIDDLE)
+        self.browser.drag([x, y], [x + 90, y + 30])
+        self.assertEqual(len({*seen, self.browser.run(CAMERA)}), 3)
+        words = r"^Frame 20: 3 bodies of 5,130 tetrahedra, \d+,\d{3} contacts\.$"
+        self.assertRegex(self.text("#scene-words"), words)
+        self.choose("view", "frame", 3, "input")
+        self.assertIn("Frame 23:", self.text("#scene-words"))
+        self.assertEqual(self.browser.run("tandem.sceneView.frame"), 3)
+        self.browser.key("PageUp")
+        self.assertIn("Frame 22:", self.text("#scene-words"))
+        self.browser.run(
+            "[...document.querySelectorAll('#view button')].find(b => b.textContent === 'Contacts').click()"
+        )
+        bodies = self.hues()
+        self.choose("view", "colour", "chunk")
+        self.assertGreater(self.hues(), 3 * bodies)
+
+    def hues(self):
+        """The number of distinct hues, of 36, in the picture."""
+        colours = ([int(part) / 255 for part in name.split(",")] for name in self.browser.run(COLOURS))
+        seen = (colorsys.rgb_to_hls(*colour) for colour in colours)
+        return len({int(36 * hue) for hue, _, saturation in seen if saturation > 0.5})
 
     def pixels(self, frame):
-        """{colour: number of its pixels} of the points of contacts alone."""
+        """COLOURS of the points of contacts alone."""
         self.browser.run(
             f"tandem.sceneView.show({frame}); tandem.sceneView.objects.forEach(object => {{ object.visible = false; }}); "
             "tandem.sceneView.contacts.normals.visible = false"

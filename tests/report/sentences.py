@@ -5,11 +5,13 @@ sentences, conditions, and omissions for lack of space."""
 
 import dataclasses
 import json
+import re
 import unittest
 
-from tests.program import SOURCE
+from tests.report.case import Shown
 
 from tandem.cell import Answer, Cell
+from tandem.pages.markup import markup
 from tandem.report.conditions import conditions_text, sampling_text
 from tandem.report.data import data_of
 from tandem.report.groups import groups_of
@@ -45,10 +47,6 @@ def cell_of(algorithm, rounds, k="18", pairs=None, kind="gpu", stages=None, **ch
         "environment": {"commit": "1", "dirty": False, "date": "2026"},
     }
     return Cell(record | changes, "some.jsonl", 1)
-
-
-def records_of(cells):
-    return Records(paths=["some.jsonl"], cells=cells)
 
 
 def groups_and_sentences(cells):
@@ -145,10 +143,10 @@ class Sentences(unittest.TestCase):
             ),
         ):
             cells = [cell_of("a", ONE_MS[: len(other)]), cell_of("b", other)]
-            group = json.loads(data_of(records_of(cells), 1_000_000, "", "").json)["groups"][0]
-            self.assertTrue(group["lead"]["title"].startswith(first), group)
-            self.assertEqual(group["lead"]["which"], behind)
-            self.assertIn(word, group["words"])
+            data = data_of(Records(["some.jsonl"], cells), 1_000_000)
+            [group] = json.loads(data.json)["groups"]
+            self.assertEqual((group["lead"][: len(first)], group["which"]), (first, behind))
+            self.assertIn(word, data.sentences[0])
 
     def test_a_lower_paired_ratio_is_no_lead(self):
         """The second has the greater median, but most of its rounds are faster than those of the first."""
@@ -339,39 +337,24 @@ class Conditions(unittest.TestCase):
 
 
 class Data(unittest.TestCase):
-    def test_omits_the_last_cells_with_a_note(self):
-        data = data_of(records_of([cell_of(f"a{i}", ONE_MS) for i in range(200)]), 20_000, "", "")
-        self.assertLess(len(data.json), 30_000)
-        made = json.loads(data.json)
-        self.assertLess(len(made["cells"]), 200)
-        self.assertGreater(len(made["cells"]), 10)
-        self.assertEqual((len(made["cells"]), made["notes"]), (data.cells, data.notes))
-        self.assertIn("of 200 cells are left out", data.notes[0])
-
-    def test_curves_are_omitted_before_cells(self):
+    def test_omits_details_and_curves_then_the_last_cells(self):
         frames = {"frames": {"first": 0, "last": 499}}
         total = {"total_ns": {"samples": [6e7], "rounds": [0], "frames": [[123456] * 500]}}
         cells = [cell_of(f"a{i}", [60], **frames, **total) for i in range(20)]
-        whole = json.loads(data_of(records_of(cells), 1_000_000, "", "").json)
-        self.assertEqual((whole["notes"], sum(curve is None for curve in whole["curves"])), ([], 0))
-        less = json.loads(data_of(records_of(cells), 40_000, "", "").json)
-        self.assertEqual(len(less["cells"]), 20)
-        missing = sum(curve is None for curve in less["curves"])
-        self.assertTrue(0 < missing < 20, missing)
-        self.assertEqual(
-            less["notes"],
-            [
-                f"times by frame or by round of some cells are left out ({missing} lists), so that the page stays small"
-            ],
-        )
-
-    def test_common_values_are_stored_once(self):
-        made = json.loads(
-            data_of(records_of([cell_of("a", ONE_MS), cell_of("a", TWO_MS)]), 1_000_000, "p", "d").json
-        )
-        self.assertEqual(
-            [made["values"].count(value) for value in ("a", "pile:bodies=3", {"k": "18", "bodies": "3"})],
-            [1, 1, 1],
-        )
-        self.assertEqual((made["program"], made["date"], made["fields"][-1]), ("p", "d", "label"))
-        self.assertEqual([row[0] for row in made["cells"]], [0, 0])
+        left_out = r"times by frame or details of some cells are left out \((\d+) of them\), so that the page stays small"
+        last = r"the last (\d+) of 20 cells are left out, so that the page stays small; give fewer files or fewer lines"
+        for size, notes in ((1_000_000, []), (60_000, [left_out]), (10_000, [last, left_out])):
+            data = data_of(Records(["some.jsonl"], cells), size)
+            made, shown = (
+                json.loads(data.json)["cells"],
+                Shown(markup([part.content for part in data.sections])),
+            )
+            self.assertLess(len(data.json) + sum(len(markup(part.content)) for part in data.sections), size)
+            found = [int(re.fullmatch(note, own)[1]) for note, own in zip(notes, data.notes, strict=True)]
+            kept = 20 - found[0] if last in notes else 20
+            self.assertEqual((data.cells, len(made), len(shown.rows)), (kept, kept, 1 + 2 * kept))
+            missing = sum("curve" not in cell for cell in made) + sum(
+                row == ["left out"] for row in shown.rows
+            )
+            self.assertEqual(missing, found[-1] if notes else 0)
+            self.assertTrue(all(note in shown.words for note in data.notes))

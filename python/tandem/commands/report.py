@@ -57,10 +57,12 @@ def _made_by(program):
 
 def _add_scene(page, options, program):
     """Adds the scene to the page, if one is given. Returns the text for the output line, or an empty text."""
+    from ..report.assembly import SCENE
     from ..report.scene import shown_scene, words_of
 
     if not options.scene:
         return ""
+    page.sections.append(SCENE)
     scene = shown_scene(program, words_of(options.scene, options), options.output)
     page.data["scene"] = scene.json
     return f", {scene.key}"
@@ -68,7 +70,9 @@ def _add_scene(page, options, program):
 
 def _write(options, program):
     """Writes the page and returns the output line. Raises scene.ExportEnded and the errors that run() handles."""
-    from ..report.assembly import html_of, open_page, write_page
+    from ..pages.frame import html_of
+    from ..pages.markup import element
+    from ..report.assembly import open_page, write_page
 
     if options.against and len(options.files) != 1:
         raise BadUse(
@@ -81,15 +85,21 @@ def _write(options, program):
     from ..report.data import data_of, size_of
     from ..report.reading import read_records
 
-    records, empty = read_records(options.files), size_of(html_of(page))
+    records, empty, compared = read_records(options.files), size_of(html_of(page)), None
     if options.against:
         from ..report.differences import differences
 
-        page.data["differences"] = differences(options.against, options.files[0], records.cells)
+        compared = differences(options.against, options.files[0], records.cells)
     scene = _add_scene(page, options, program)
-    free_bytes = max(MAX_BYTES - empty - sum(map(size_of, page.data.values())), 0)
-    data = data_of(records, free_bytes, *_made_by(program))
-    page.data["records"] = data.json
+    free_bytes = MAX_BYTES - empty - sum(map(size_of, page.data.values()))
+    data = data_of(records, free_bytes, compared)
+    page.data["records"], page.sections[:0] = data.json, data.sections
+    version, date = _made_by(program)
+    against = f", against {compared['old']}" if compared else ""
+    page.lead = element(
+        "p", f"Files: {', '.join(records.files)}{against}. Made {date}.", class_="quiet", id="made"
+    )
+    page.footer = [element("p", version), page.footer]
     written = write_page(options.output, page)
     for note in data.notes:
         warn(f"tandem: {note}")

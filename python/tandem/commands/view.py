@@ -4,7 +4,7 @@
 import re
 
 from ..files import check_output
-from ..report.assembly import open_page, write_page
+from ..report.assembly import SCENE, open_page, write_page
 from ..report.scene import ExportEnded, add_options, shown_scene, words_of
 from . import Parser, check_together, run
 
@@ -40,6 +40,7 @@ def _make(options, program):
     except ExportEnded as ended:
         return "", ended.code
     page.title, page.data["scene"] = f"{scene.name}, a scene of tandem", scene.json
+    page.sections = [SCENE]
     path = options.output or _file_name(scene.name)
     if not options.output:
         check_output(path, (), ".partial")

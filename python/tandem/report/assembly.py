@@ -1,83 +1,31 @@
 # SPDX-License-Identifier: MIT
-"""Assembles a self-contained page from its own files, the libraries that it uses, and its data."""
+"""Assembles a self-contained page from the kit, its own scripts, and the libraries that it uses."""
 
-import dataclasses
 import pathlib
 
 from ..files import replace_whole
-from ..text_lines import visible, visible_json
+from ..pages.frame import Page, Section, html_of, own_script
+from ..pages.markup import Html
 from .libraries import CHARTS, SCENES, scripts
 
 FOLDER = pathlib.Path(__file__).parent / "page"
-CHART_SCRIPTS = (
-    "words.js",
-    "tables.js",
-    "axes.js",
-    "charts.js",
-    "figures.js",
-    "history.js",
-    "stages.js",
-    "sweeps.js",
-    "errors.js",
-    "kernels.js",
-)
+CHART_SCRIPTS = """
+    axes.js charts.js figures.js history.js stages.js sweeps.js errors.js kernels.js
+""".split()
 SCENE_SCRIPTS = ("contacts.js", "scene.js", "scene_controls.js")
-
-
-@dataclasses.dataclass
-class Page:
-    """libraries: texts of the libraries of the page; has_charts, has_scene: which of its own scripts it has;
-    data: {id: JSON text}."""
-
-    title: str
-    libraries: list = dataclasses.field(default_factory=list)
-    has_charts: bool = False
-    has_scene: bool = False
-    data: dict = dataclasses.field(default_factory=dict)
-
-
-def open_page(title, has_charts, has_scene, program, command):
-    """A Page without data. Raises BadUse if a library that it needs is missing."""
-    libraries = (CHARTS if has_charts else {}) | (SCENES if has_scene else {})
-    return Page(title, scripts(libraries, program, command), has_charts, has_scene)
+SCENE = Section("view", "The scene", is_hidden=True)
 
 
 def _own(name):
     return (FOLDER / name).read_text(encoding="utf-8")
 
 
-def _escaped(text):
-    return visible(text).replace("&", "&amp;").replace("<", "&lt;")
-
-
-def _data_element(name, json):
-    """An element with JSON data, escaped so that no text of a record can end it or contain control characters."""
-    escaped = visible_json(json).replace("<", "\\u003c")
-    return f'<script type="application/json" id="data-{name}">{escaped}</script>\n'
-
-
-def _script_element(script):
-    script = script.replace("</script", "<\\/script").replace("<!--", "<\\!--")
-    return f"<script>\n{script}\n</script>\n"
-
-
-def html_of(page):
-    own = [
-        "data.js",
-        *(CHART_SCRIPTS if page.has_charts else ()),
-        *(SCENE_SCRIPTS if page.has_scene else ()),
-        "page.js",
-    ]
-    elements = [
-        *(_data_element(*item) for item in page.data.items()),
-        *map(_script_element, [*page.libraries, *map(_own, own)]),
-    ]
-    html = (
-        _own("page.html")
-        .replace("/*styles*/", _own("page.css"), 1)
-        .replace("<!--title-->", _escaped(page.title))
-    )
-    return html.replace("<!--scripts-->", "".join(elements), 1)
+def open_page(title, has_charts, has_scene, program, command):
+    """A Page without sections. Raises BadUse if a library that it needs is missing."""
+    libraries = (CHARTS if has_charts else {}) | (SCENES if has_scene else {})
+    own = [*(CHART_SCRIPTS if has_charts else ()), *(SCENE_SCRIPTS if has_scene else ()), "begin.js"]
+    texts = [*scripts(libraries, program, command), own_script(), *map(_own, own)]
+    return Page(title, footer=Html(_own("licences.html")), scripts=texts, style=_own("report.css"))
 
 
 def write_page(path, page):

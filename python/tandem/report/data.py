@@ -1,28 +1,27 @@
 # SPDX-License-Identifier: MIT
-"""Makes the JSON text of records for a page, within a limit of its size."""
+"""Makes the data and the parts of a page from records, within a limit of its size."""
 
 import dataclasses
 import json
 
-from .. import lines
+from ..kinds import fields_of
+from ..pages.markup import markup
+from . import parts
+from .cells import charted, curve, details, row
 from .groups import groups_of
 from .leads import title, which_text
 from .numbers import rounded
-from .reading import WHAT_TO_GIVE
-from .rows import COLUMNS, curve, rounds, row
 from .sentences import group_sentences, named_cells, summary_sentences
 from .sweeps import sweeps_of
-
-LABEL_AND_GROUP_BYTES = 80  # estimate per cell
-SHARED = [column for column, (is_shared, _) in enumerate(COLUMNS.values()) if is_shared]
 
 
 @dataclasses.dataclass
 class PageData:
-    """The JSON text, the number of its cells, notes on records that are left out, and the page's sentences on
-    each group of cells and on all together."""
+    """json: data of the charts. sections: parts of the page. cells: their number. notes: on records that are
+    left out. sentences: on each group of cells, and on all together."""
 
     json: str
+    sections: list
     cells: int
     notes: list
     sentences: list
@@ -36,58 +35,8 @@ def size_of(text):
     return len(text.encode(errors="replace"))
 
 
-class _Interned:
-    """Repeated values, each stored once. A number refers to each."""
-
-    def __init__(self):
-        self.values, self.bytes, self._numbers = [], 2, {}
-
-    def number(self, value):
-        text = dumped(value)
-        if text not in self._numbers:
-            self._numbers[text] = len(self.values)
-            self.values.append(value)
-            self.bytes += size_of(text) + 1
-        return self._numbers[text]
-
-    def row(self, row):
-        """The row with numbers instead of values in SHARED columns; None stays None."""
-        return [
-            self.number(value) if column in SHARED and value is not None else value
-            for column, value in enumerate(row)
-        ]
-
-
-def _shown(cell, records):
-    """The row, the curve and the rounds of a cell. Raises RecordError."""
-    try:
-        return row(cell, records.paths.index(cell.path)), curve(cell), rounds(cell)
-    except lines.FIELD_ERRORS:
-        raise lines.RecordError(
-            f"{cell.location}: a record that lacks fields of its schema; {WHAT_TO_GIVE}"
-        ) from None
-
-
-def _fitting_cells(records, max_bytes, values):
-    """Rows with interned values, curves and rounds of those cells that fit. The last cells are left out, with a
-    note, if there are too many."""
-    size, shown, cells = 0, [], records.cells
-    for cell in cells:
-        own, *times = _shown(cell, records)
-        shown.append((values.row(own), *times))
-        size += size_of(dumped(shown[-1][0])) + LABEL_AND_GROUP_BYTES
-        if size + values.bytes > max_bytes:
-            shown.pop()
-            records.cells = cells[: len(shown)]
-            records.notes.append(
-                f"the last {len(cells) - len(shown)} of {len(cells)} cells are left out, so that the page stays small; "
-                "give fewer files or fewer lines"
-            )
-            break
-    return shown
-
-
 def _group(group, cells):
+    named = named_cells(group, cells)
     ranked = [
         [
             one.cell,
@@ -98,36 +47,13 @@ def _group(group, cells):
         ]
         for one in group.ranked
     ]
-    named = named_cells(group, cells)
+    which = "" if group.answers_differ else which_text(named)
     return {
         "title": group.title,
-        "cells": group.cells,
         "ranked": ranked,
-        "differ": group.answers_differ,
-        "words": group_sentences(group, cells),
-        "lead": {
-            "title": title(named, group.answers_differ),
-            "which": "" if group.answers_differ else which_text(named),
-        },
+        "lead": title(named, group.answers_differ),
+        "which": which,
     }
-
-
-class _Details:
-    """Details of cells, shown as far as they fit."""
-
-    def __init__(self, free_bytes):
-        self.free_bytes, self.missing = free_bytes, 0
-
-    def fitting(self, values):
-        """The values in their order, with None for values that do not fit."""
-        return [value if self._fits(size_of(dumped(value)) + 1) else None for value in values]
-
-    def _fits(self, size):
-        if size > self.free_bytes:
-            self.missing += 1
-            return False
-        self.free_bytes -= size
-        return True
 
 
 def _history(cells):
@@ -140,48 +66,90 @@ def _history(cells):
     return shown_history(cells)
 
 
-def _cell_data(records, values, max_bytes):
-    """All data of cells on the page."""
-    shown = _fitting_cells(records, max_bytes, values)
-    cells, rows = records.cells, [own for own, *_ in shown]
-    groups = groups_of(cells, records.verdicts)
-    for group in groups:
-        for number, label in zip(group.cells, group.labels):
-            rows[number].append(label)
-    history, moves = _history(cells)
-    made = {
-        "fields": list(COLUMNS),
-        "shared": [name for name, (is_shared, _) in COLUMNS.items() if is_shared],
-        "values": values.values,
-        "history": history,
-        "words": [*summary_sentences(groups, cells), *moves],
-        "groups": [_group(group, cells) for group in groups],
-        "sweeps": sweeps_of(cells, records.verdicts),
-        "cells": rows,
-        "older": [number for number, cell in enumerate(cells) if cell.is_older],
-    }
-    used = (
-        sum(size_of(dumped(made[name])) for name in ("cells", "groups", "sweeps", "history")) + values.bytes
-    )
-    details = _Details(max(max_bytes - used, 0))
-    made |= {
-        "curves": details.fitting([own for _, own, _ in shown]),
-        "rounds": details.fitting([own for *_, own in shown]),
-    }
-    if details.missing:
+class _Cells:
+    """What a page has of cells: `data` for charts, `rows` of the table, and `size` in bytes. Details and curves
+    come with fit()."""
+
+    def __init__(self, cells, verdicts):
+        self.cells, self.groups = cells, groups_of(cells, verdicts)
+        labels = {
+            number: label or cells[number].algorithm
+            for group in self.groups
+            for number, label in zip(group.cells, group.labels)
+        }
+        self.rows, self.details, charts = [], [None] * len(cells), []
+        for number, cell in enumerate(cells):
+            with fields_of("cell", cell.location):
+                self.rows.append(row(cell, labels[number]))
+                charts.append(charted(cell, labels[number]))
+        history, moves = _history(cells)
+        self.words = [*summary_sentences(self.groups, cells), *moves]
+        self.sentences = [group_sentences(group, cells) for group in self.groups]
+        self.data = {
+            "cells": charts,
+            "groups": [_group(group, cells) for group in self.groups],
+            "sweeps": sweeps_of(cells, verdicts),
+            "history": history,
+        }
+        shown = self.summary([], None).content, parts.cells_part(self.rows, self.details).content
+        self.size = sum(map(size_of, (dumped(self.data), *map(markup, shown))))
+
+    def summary(self, notes, differences):
+        return parts.summary(self.groups, self.sentences, self.words, notes, differences)
+
+    def fit(self, free_bytes, against):
+        """Adds details and curves of cells as far as they fit. Returns the number of those left out."""
+        left_out = 0
+        for number, cell in enumerate(self.cells):
+            with fields_of("cell", cell.location):
+                shown = details(cell, against.get(number)), curve(cell)
+            for value, kept, name in zip(
+                shown, (self.details, self.data["cells"][number]), (number, "curve")
+            ):
+                size = size_of(dumped(value)) if value else 0
+                if size > free_bytes:
+                    left_out += 1
+                else:
+                    free_bytes -= size
+                    kept[name] = value
+        return left_out
+
+
+def _fitting_cells(records, max_bytes, against):
+    """_Cells of the first cells, as many as fit. Adds notes on what is left out."""
+    all_cells = len(records.cells)
+    made = _Cells(records.cells, records.verdicts)
+    while made.size > max_bytes and records.cells:
+        kept = int(0.95 * len(records.cells) * max(max_bytes, 0) / made.size)
+        records.cells = records.cells[:kept]
+        made = _Cells(records.cells, records.verdicts)
+    if len(records.cells) < all_cells:
         records.notes.append(
-            f"times by frame or by round of some cells are left out ({details.missing} lists), so that the page stays small"
+            f"the last {all_cells - len(records.cells)} of {all_cells} cells are left out, so that the page stays small; "
+            "give fewer files or fewer lines"
+        )
+    left_out = made.fit(max_bytes - made.size, against)
+    if left_out:
+        records.notes.append(
+            f"times by frame or details of some cells are left out ({left_out} of them), so that the page stays small"
         )
     return made
 
 
-def data_of(records, max_bytes, program, date):
-    """PageData of at most about `max_bytes`: cells with their groups and sentences, profiles, ceilings,
-    simulations. Larger data are cut: curves and rounds are left out first, then the last cells. `program` and
-    `date`: version of the program and time, for the page."""
-    rest = {"profiles": records.profiles, "ceilings": records.ceilings, "simulations": records.simulations}
-    cell_bytes = max(max_bytes - sum(size_of(dumped(part)) for part in rest.values()), 0)
-    made = {"program": program, "date": date} | _cell_data(records, _Interned(), cell_bytes) | rest
-    made |= {"files": records.files, "cell_records": records.cell_records, "notes": records.notes}
-    sentences = [f"{group['title']}: {group['words']}" for group in made["groups"]] + made["words"]
-    return PageData(dumped(made), len(records.cells), records.notes, sentences)
+def data_of(records, max_bytes, differences=None):
+    """PageData of at most about `max_bytes`. Larger data are cut: curves and details of cells are left out
+    first, then the last cells. `differences`: from differences.py."""
+    rest = {name: getattr(records, name) for name in ("profiles", "simulations")} | {
+        "differences": differences
+    }
+    against = {one["cell"]: one["against"] for one in (differences or {"cells": ()})["cells"]}
+    made = _fitting_cells(records, max_bytes - size_of(dumped(rest)), against)
+    sections = [made.summary(records.notes, differences)]
+    sections.append(parts.Section("charts", "Charts", is_hidden=True))
+    if made.rows:
+        sections.append(parts.cells_part(made.rows, made.details))
+    if records.ceilings:
+        sections.append(parts.ceilings(records.ceilings))
+    json_text = dumped(made.data | rest)
+    sentences = [f"{group.title}: {words}" for group, words in zip(made.groups, made.sentences)] + made.words
+    return PageData(json_text, sections, len(records.cells), records.notes, sentences)

@@ -22,13 +22,20 @@ BOUNDS = {
 class Group:
     """Cells of one scene, frame range, devices, bounds and output. cells: their numbers, in order. labels:
     the values in which they differ. ranked: verdicts.Ranked of correct cells without older records, the
-    fastest first. answers_differ: ranked cells have different answers, so that none is the fastest."""
+    fastest first. answers_differ: ranked cells have different answers, so that none is the fastest.
+    has_bad_cells: a cell failed or is wrong."""
 
     title: str
     cells: list = dataclasses.field(default_factory=list)
     labels: list = dataclasses.field(default_factory=list)
     ranked: list = dataclasses.field(default_factory=list)
     answers_differ: bool = False
+    has_bad_cells: bool = False
+
+    @property
+    def is_informative(self):
+        """Whether it has a comparison or an error."""
+        return len(self.ranked) > 1 or self.has_bad_cells
 
 
 def _bounds(cell):
@@ -64,6 +71,7 @@ def is_rankable(cell):
 def _rank(group, cells, recorded):
     rankable = [number for number in group.cells if is_rankable(cells[number])]
     verdict = verdict_of([cells[number] for number in rankable], recorded)
+    group.has_bad_cells = any(cells[number].status != "ok" for number in group.cells)
     group.answers_differ = verdict.answers_differ
     group.ranked = [dataclasses.replace(one, cell=rankable[one.cell]) for one in verdict.cells]
 

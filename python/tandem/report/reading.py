@@ -4,176 +4,89 @@
 import dataclasses
 import os
 
-from .. import kinds, lines
-from ..cell import Cell
+from .. import kinds
+from ..cell import Cell, superseded
 from ..verdicts import RecordedVerdicts
 from .other_records import Simulations, shown_ceilings, shown_profile
 
-WHAT_TO_GIVE = "give files that 'tandem run --out', 'profile --out', 'simulate --record' or 'devices --measure --out' wrote"
 MAX_CELLS = 6000  # with more, only one record per key is shown
 MAX_OTHER_RECORDS = 200  # profiles, and records of ceilings
-LISTS = {"cell": "cells", "profile": "profiles", "simulation": "simulations", "ceilings": "ceilings"}
 
 
 @dataclasses.dataclass
 class Records:
-    """cells: Cells. cell_records: number of all records of cells; an interrupted record and its
-    continuation count as one. paths: of all files. files: the name and the numbers of records of each kind for each file. notes:
-    texts on records left out and incomplete lines."""
+    """files: their names. cells: Cells. profiles, ceilings, simulations: for the page, by other_records.py.
+    notes: texts on records left out and incomplete lines."""
 
+    files: list
     cells: list = dataclasses.field(default_factory=list)
-    cell_records: int = 0
     profiles: list = dataclasses.field(default_factory=list)
     ceilings: list = dataclasses.field(default_factory=list)
     simulations: list = dataclasses.field(default_factory=list)
     verdicts: RecordedVerdicts = dataclasses.field(default_factory=RecordedVerdicts)
-    files: list = dataclasses.field(default_factory=list)
-    paths: list = dataclasses.field(default_factory=list)
     notes: list = dataclasses.field(default_factory=list)
 
 
-def _is_copy(cell, other):
-    return (
-        cell.run is not None
-        and cell.run == other.run
-        and cell.samples_by_round == other.samples_by_round
-        and cell.status == other.status
-    )
+def _mark_older(cells):
+    """Marks all records of a key as older, except the last one that is ok, or the last one if none is."""
+    newest = {}
+    for cell in cells:
+        if cell.key not in newest or cell.status == "ok" or newest[cell.key].status != "ok":
+            newest[cell.key] = cell
+    for cell in cells:
+        cell.is_older = newest[cell.key] is not cell
 
 
-class _Kept:
-    """Cells by number, in the order of their records. With more than `max_cells`, keeps only one per
-    key. Leaves out copies, records that another record of the same key continues, and records of interrupted
-    cells before a later one."""
-
-    def __init__(self, max_cells):
-        self.max_cells, self.one_per_key = max_cells, False
-        self.cells, self.numbers_by_key = {}, {}
-        self.records = self.added = self.older = self.left_out = self.left_out_wrong = 0
-
-    def add(self, cell):
-        numbers = self.numbers_by_key.get(cell.key, [])
-        if any(
-            self.cells[number].continues(cell) or _is_copy(cell, self.cells[number]) for number in numbers
-        ):
-            return
-        interrupted = [
-            number
-            for number in numbers
-            if cell.continues(self.cells[number]) or cell.remeasures(self.cells[number])
-        ]
-        self._remove(interrupted)
-        self.records += 1 - len(interrupted)
-        if not self.one_per_key and len(self.cells) == self.max_cells:
-            self._keep_newest()
-        numbers = self.numbers_by_key.get(cell.key, [])
-        if self.one_per_key and numbers:
-            self._replace(numbers[0], cell)
-        elif len(self.cells) == self.max_cells:
-            self.left_out += 1
-            self.left_out_wrong += cell.status != "ok"
-        else:
-            self.added += 1
-            self.cells[self.added] = cell
-            self.numbers_by_key.setdefault(cell.key, []).append(self.added)
-
-    def _remove(self, numbers):
-        for number in numbers:
-            self.numbers_by_key[self.cells.pop(number).key].remove(number)
-
-    def _replace(self, number, cell):
-        self.older += 1
-        if cell.status == "ok" or self.cells[number].status != "ok":
-            self.cells[number] = cell
-
-    def mark_older(self):
-        """Marks all records of a key as older, except the last one that is ok, or the last one if none is."""
-        for numbers in self.numbers_by_key.values():
-            good = [number for number in numbers if self.cells[number].status == "ok"]
-            newest = (good or numbers or [None])[-1]
-            for number in numbers:
-                self.cells[number].is_older = number != newest
-
-    def _keep_newest(self):
-        """Removes older records. From this call on, keeps one record per key."""
-        self.one_per_key = True
-        self.mark_older()
-        older = [number for number, cell in self.cells.items() if cell.is_older]
-        self.older += len(older)
-        self._remove(older)
-
-    def notes(self):
-        if self.older:
-            yield f"{self.older} older records of cells that were recorded again are left out"
-        if self.left_out:
-            yield (
-                f"{self.left_out} of {self.records} records of cells are left out, {self.left_out_wrong} of them failed or wrong: a page "
-                f"shows at most {self.max_cells}; give fewer files or fewer lines"
-            )
+def _kept(cells, max_cells, notes):
+    """At most `max_cells`. If there are more, first older records are left out, then the last ones."""
+    _mark_older(cells)
+    if len(cells) <= max_cells:
+        return cells
+    kept = [cell for cell in cells if not cell.is_older]
+    if len(kept) < len(cells):
+        notes.append(f"{len(cells) - len(kept)} older records of cells that were recorded again are left out")
+    left_out = kept[max_cells:]
+    if left_out:
+        bad = sum(cell.status != "ok" for cell in left_out)
+        notes.append(
+            f"{len(left_out)} of {len(cells)} records of cells are left out, {bad} of them failed or wrong: a page "
+            f"shows at most {max_cells}; give fewer files or fewer lines"
+        )
+    return kept[:max_cells]
 
 
-def _checked(text, location):
-    return kinds.checked(text, location, WHAT_TO_GIVE)
-
-
-class _Reader:
-    """Reads several files into one Records."""
-
-    def __init__(self, max_cells):
-        self.records, self.cells, self.simulations = Records(), _Kept(max_cells), Simulations()
-        self.left_out = 0
-
-    def read(self, path):
-        self.records.paths.append(os.fspath(path))
-        self.records.files.append({"name": os.path.basename(path), **dict.fromkeys(LISTS.values(), 0)})
-        number, before = 0, len(self.records.notes)
-        for number, (kind, record) in lines.numbered(path, self.records.notes.append, _checked):
-            try:
-                self._add(kind, record, path, number)
-            except lines.RecordError:
-                raise
-            except lines.FIELD_ERRORS:
-                raise lines.RecordError(
-                    f"{path}:{number}: a record that lacks fields of its schema; {WHAT_TO_GIVE}"
-                ) from None
-        if number == 0 and len(self.records.notes) > before:
-            raise lines.RecordError(f"{path}: its only line has no end; name a file of records")
-
-    def _add(self, kind, record, path, line):
-        if kind == "verdict":
-            self.records.verdicts.add(record, f"{path}:{line}")
-            return
-        self.records.files[-1][LISTS[kind]] += 1
-        if kind == "cell":
-            self.cells.add(Cell(record, path, line))
-        elif kind == "simulation":
-            self.simulations.add(record, path)
-        else:
-            shown = shown_profile(record, path) if kind == "profile" else shown_ceilings(record)
-            others = getattr(self.records, LISTS[kind])
-            others.append(shown)
-            self.left_out += len(others) > MAX_OTHER_RECORDS
-            del others[MAX_OTHER_RECORDS:]
-
-    def finish(self):
-        records, cells = self.records, self.cells
-        cells.mark_older()
-        records.cells, records.cell_records = list(cells.cells.values()), cells.records
-        records.simulations = self.simulations.shown()
-        records.notes += cells.notes()
-        if self.left_out:
-            records.notes.append(
-                f"{self.left_out} profiles or records of ceilings are left out: a page shows at most {MAX_OTHER_RECORDS} of each"
-            )
-        if self.simulations.left_out:
-            records.notes.append(f"the last {self.simulations.left_out} simulations are left out")
-        return records
+def _add(kind, record, location, records, simulations):
+    path, _, line = location.rpartition(":")
+    if kind == "cell":
+        records.cells.append(Cell(record, path, int(line)))
+    elif kind == "verdict":
+        records.verdicts.add(record, location)
+    elif kind == "simulation":
+        simulations.add(record, path)
+    elif kind == "profile":
+        records.profiles.append(shown_profile(record, path))
+    else:
+        records.ceilings.append(shown_ceilings(record))
 
 
 def read_records(files, max_cells=MAX_CELLS):
     """Records of files with any kinds of records. Raises RecordError for files that cannot be read and for
     other schemas."""
-    reader = _Reader(max_cells)
+    records, simulations = Records([os.path.basename(file) for file in files]), Simulations()
     for file in files:
-        reader.read(file)
-    return reader.finish()
+        for location, kind, record in kinds.each(os.fspath(file), records.notes.append):
+            with kinds.fields_of(kind, location):
+                _add(kind, record, location, records, simulations)
+    dropped = superseded(records.cells)
+    cells = [cell for number, cell in enumerate(records.cells) if number not in dropped]
+    records.cells = _kept(cells, max_cells, records.notes)
+    records.simulations = simulations.shown()
+    left_out = sum(max(len(own) - MAX_OTHER_RECORDS, 0) for own in (records.profiles, records.ceilings))
+    if left_out:
+        records.notes.append(
+            f"{left_out} profiles or records of ceilings are left out: a page shows at most {MAX_OTHER_RECORDS} of each"
+        )
+        del records.profiles[MAX_OTHER_RECORDS:], records.ceilings[MAX_OTHER_RECORDS:]
+    if simulations.left_out:
+        records.notes.append(f"the last {simulations.left_out} simulations are left out")
+    return records

@@ -68,6 +68,12 @@ tandem.pointNames = {
   }
 };
 
+tandem.oneRound = "one round: no interval";
+tandem.brackets = (low, high) => low === null ? "-" : `[${tandem.number(low)}, ${tandem.number(high)}]`;
+/** The 95 % interval of a cell's time, and its time with the interval. */
+tandem.intervalText = ({ms, rounds}) => rounds > 1 ? tandem.brackets(ms[1], ms[2]) : tandem.oneRound;
+tandem.timeText = cell => `${tandem.number(cell.ms[0])} ms a frame ${cell.rounds > 1 ? tandem.intervalText(cell) : `(${tandem.oneRound})`}`;
+
 /** The text of a point under the pointer: dataset.texts has it where positions are not the values. */
 tandem.pointText = {title: items => items.some(item => item.dataset.texts) ? "" : items[0]?.label,
   label: item => item.dataset.texts?.[item.dataIndex] ?? `${item.dataset.label}: ${item.formattedValue}`};

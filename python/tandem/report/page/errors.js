@@ -6,23 +6,20 @@ tandem.errors = [["depth_relative", "error of depth, relative, median"], ["norma
   ["hausdorff", "error of the contacts' hull, median"], ["volume_relative", "error of volume, relative, median"], ["false_share", "share of candidate pairs that do not meet"],
   ["missed_share", "share of meeting pairs that are missed"]];
 
-/** Names of cells: algorithm, k, contact rule, decision and rounding, as far as they differ; at least the algorithm. */
+/** Names of cells: those of their `names` that differ; at least the first, the algorithm. */
 tandem.errorNames = cells => {
-  const parts = [cell => cell.algorithm, cell => cell.settings.k && "k=" + cell.settings.k,
-    ...["contact_rule", "decision", "rounding", "precision"].map(name => cell => cell.settings[name])];
-  const differing = parts.filter(part => new Set(cells.map(part)).size > 1);
-  return new Map(cells.map(cell => [cell, (differing.length ? differing : parts.slice(0, 1)).map(part => part(cell)).filter(text => text).join(" ")]));
+  const differs = cells[0].names.map((_, i) => new Set(cells.map(cell => cell.names[i])).size > 1);
+  return new Map(cells.map(cell => [cell, cell.names.filter((name, i) => name && (differs[i] || (i === 0 && !differs.includes(true)))).join(" ")]));
 };
 
 /** Time over error, with the Pareto-optimal cells marked: no other cell is better in one and at least equal in the other. */
 tandem.errorFigure = data => {
-  const cells = data.cells.filter(cell => cell.error && cell.ms && cell.status === "ok" && !cell.older);
-  const of = cell => `${cell.scene}, on ${cell.device}`;
-  const choices = [...new Set(cells.map(of))].flatMap(where => tandem.errors.filter(([name]) => cells.filter(cell => of(cell) === where && cell.error[name] > 0).length > 1)
+  const cells = data.cells.filter(cell => cell.error);
+  const choices = [...new Set(cells.map(cell => cell.where))].flatMap(where => tandem.errors.filter(([name]) => cells.filter(cell => cell.where === where && cell.error[name] > 0).length > 1)
     .map(([name, text]) => ({value: JSON.stringify([where, name]), text: `${text}: ${where}`})));
   return choices.length && new tandem.Figure({id: "error", label: "error and scene", choices, describe: value => {
     const [where, name] = JSON.parse(value);
-    const own = cells.filter(cell => of(cell) === where && typeof cell.error[name] === "number");
+    const own = cells.filter(cell => cell.where === where && typeof cell.error[name] === "number");
     const names = tandem.errorNames(own);
     const unbeaten = own.filter(cell => !own.some(other => other !== cell && other.ms[0] <= cell.ms[0] && other.error[name] <= cell.error[name] &&
       (other.ms[0] < cell.ms[0] || other.error[name] < cell.error[name])));

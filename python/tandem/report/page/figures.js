@@ -10,36 +10,35 @@ tandem.mediansFigure = data => {
   const groups = data.groups.filter(group => group.ranked.length > 1);
   return groups.length && new tandem.Figure({id: "medians", label: "comparison", choices: tandem.groupChoices(groups), describe: number => {
     const group = data.groups[number];
-    const cells = group.ranked.slice(0, tandem.maxBars).map(entry => data.cells[entry[0]]);
+    const cells = group.cells.slice(0, tandem.maxBars);
     const left = group.ranked.length - cells.length;
-    return {title: group.lead.title,
+    return {title: group.lead,
       alt: `${group.title}: milliseconds a frame of ${cells.length} cells.` + (left ? ` ${left} slower ones are in the table of every cell.` : ""),
       type: "line", height: 110 + 26 * cells.length,
       data: {labels: cells.map(cell => tandem.shortened(cell.label, tandem.nameLength())), datasets: [{label: "ms a frame", data: cells.map(cell => cell.ms[0]), showLine: false,
         intervals: cells.map(cell => cell.rounds > 1 ? cell.ms.slice(1) : null), colour: 1, texts: cells.map(tandem.timeText)}]},
       options: {indexAxis: "y", scales: {x: tandem.axis("milliseconds a frame, 95 % intervals", cells.flatMap(cell => cell.ms)), y: {offset: true, ticks: {autoSkip: false}}}},
-      table: [group.title, ["cell", "ms a frame", "95 %", "times the first", "95 % of this ratio", "told apart"], group.ranked.slice(0, 200).map(([index, ratio, low, high, apart], i) =>
-        [data.cells[index].label, data.cells[index].ms[0], tandem.intervalText(data.cells[index]), ratio, i === 0 ? "" : apart === null ? tandem.oneRound : tandem.brackets(low, high),
+      table: [group.title, ["cell", "ms a frame", "95 %", "times the first", "95 % of this ratio", "told apart"], group.ranked.slice(0, 200).map(([, ratio, low, high, apart], i) =>
+        [group.cells[i].label, group.cells[i].ms[0], tandem.intervalText(group.cells[i]), ratio, i === 0 ? "" : apart === null ? tandem.oneRound : tandem.brackets(low, high),
           i === 0 ? "" : apart === null ? "" : apart ? "yes" : "no"])]};
   }});
 };
 
 /** Times of each frame. */
 tandem.curvesFigure = data => {
-  const groups = data.groups.filter(group => group.ranked.some(entry => data.curves[entry[0]]));
+  const groups = data.groups.filter(group => group.cells.some(cell => cell.curve));
   return groups.length && new tandem.Figure({id: "curves", label: "comparison", choices: tandem.groupChoices(groups), describe: number => {
     const group = data.groups[number];
-    const cells = group.ranked.map(entry => data.cells[entry[0]]).filter(cell => data.curves[cell.index]).slice(0, 8);
-    const first = +group.cells[0].frames.split(":")[0];
-    const curve = data.curves[cells[0].index];
+    const cells = group.cells.filter(cell => cell.curve).slice(0, 8);
+    const {first, curve} = cells[0];
     const worst = curve.indexOf(Math.max(...curve));
-    const all = cells.flatMap(cell => data.curves[cell.index]);
+    const all = cells.flatMap(cell => cell.curve);
     return {title: `The slowest frame of ${tandem.shortened(cells[0].label, 60)} is frame ${first + worst}, with ${tandem.number(curve[worst])} ms`,
       alt: `${group.title}: milliseconds of each frame, the median of the replays, of ${cells.length} cells.`, type: "line",
-      data: {labels: curve.map((_, i) => first + i), datasets: cells.map(cell => ({label: tandem.shortened(cell.label, 60), data: data.curves[cell.index],
+      data: {labels: curve.map((_, i) => first + i), datasets: cells.map(cell => ({label: tandem.shortened(cell.label, 60), data: cell.curve,
         pointRadius: curve.length > 60 ? 0 : 3, borderWidth: 2}))},
       options: {scales: {x: {title: {display: true, text: "frame"}}, y: tandem.axis("ms", all)}},
-      table: [group.title, ["frame", ...cells.map(cell => cell.label)], curve.map((_, i) => [String(first + i), ...cells.map(cell => data.curves[cell.index][i])])]};
+      table: [group.title, ["frame", ...cells.map(cell => cell.label)], curve.map((_, i) => [String(first + i), ...cells.map(cell => cell.curve[i])])]};
   }});
 };
 
@@ -66,7 +65,7 @@ tandem.differencesFigure = differences => differences && new tandem.Figure({id: 
   const shown = timed.slice(0, 40).sort((a, b) => b.ratio[0] - a.ratio[0]);
   const limits = shown.flatMap(cell => cell.ratio).filter(value => value !== null);
   const left = differences.of - shown.length;
-  return {title: tandem.againstText(differences),
+  return {title: differences.title,
     alt: `New time over old time with 95 % intervals; 1 is no change. ${differences.common}. ${differences.notes.join(" ")}` + (left ? ` ${left} cells that changed less are in the table or left out.` : ""),
     type: "line", height: 110 + 26 * shown.length,
     data: {labels: shown.map(cell => tandem.shortened(cell.label, tandem.nameLength())), datasets: [{label: "new / old", data: shown.map(cell => cell.ratio[0]), showLine: false,
@@ -78,8 +77,9 @@ tandem.differencesFigure = differences => differences && new tandem.Figure({id: 
       differences.cells.map(cell => [cell.label, cell.old, cell.new, ...(cell.ratio ? [cell.ratio[0], tandem.brackets(cell.ratio[1], cell.ratio[2])] : ["", ""]), cell.p, cell.verdict])]};
 }});
 
-tandem.charts = (data, differences) => {
-  for (const figure of [tandem.differencesFigure(differences), tandem.historyFigure(data), tandem.mediansFigure(data), tandem.sweepsFigure(data), tandem.stagesFigure(data), tandem.curvesFigure(data),
+tandem.charts = data => {
+  data.groups.forEach((group, number) => Object.assign(group, {number, cells: group.ranked.map(entry => data.cells[entry[0]])}));
+  for (const figure of [tandem.differencesFigure(data.differences), tandem.historyFigure(data), tandem.mediansFigure(data), tandem.sweepsFigure(data), tandem.stagesFigure(data), tandem.curvesFigure(data),
     tandem.errorFigure(data), tandem.rooflineFigure(data), tandem.simulationsFigure(data)])
     if (figure) figure.show();
 };

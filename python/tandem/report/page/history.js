@@ -5,7 +5,7 @@
 tandem.historyFigure = data => data.history && new tandem.Figure({id: "history", label: "cell", choices: data.history.cells.map((cell, value) => ({value, text: cell.label})), describe: number => {
   const {programs, cells, left_out} = data.history;
   const {title, label, points} = cells[number];
-  const texts = points.map(([program, ms, , , ratio, moved, verdict]) => `${programs[program]}: ${tandem.number(ms)} ms a frame` + (ratio ? `, ${tandem.number(ratio[0])} times the level before${tandem.withInterval(ratio[1], ratio[2])}: ${verdict}` : verdict && `, ${verdict}`));
+  const texts = points.map(([program, ms, , , ratio, moved, verdict]) => `${programs[program]}: ${tandem.number(ms)} ms a frame` + (ratio ? `, ${tandem.number(ratio[0])} times the level before${(ratio[1] === null ? "" : " " + tandem.brackets(ratio[1], ratio[2]))}: ${verdict}` : verdict && `, ${verdict}`));
   const at = isMoved => programs.map((_, program) => points.find(point => point[0] === program && (!isMoved || point[5]))?.[1] ?? null);
   const ofProgram = programs.map((_, program) => texts[points.findIndex(point => point[0] === program)]);
   return {title, alt: `${label}: milliseconds a frame over ${programs.length} commits.`, type: "line",

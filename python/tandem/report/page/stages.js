@@ -54,13 +54,11 @@ tandem.foldedStages = bars => {
 
 /** Times by stage of each cell: the device's time, or the host's for stages without device time. */
 tandem.stagesFigure = data => {
-  const groups = data.groups.filter(group => group.ranked.some(entry => Object.keys(data.cells[entry[0]].stages).length));
-  const timed = ([device, host]) => (device > 0 ? device : host) ?? 0;
-  const barOf = cell => Object.fromEntries(Object.entries(cell.stages).map(([name, times]) => [name, timed(times)]));
+  const groups = data.groups.filter(group => group.cells.some(cell => Object.keys(cell.stages).length));
   return groups.length && new tandem.Figure({id: "stages", label: "comparison", choices: tandem.groupChoices(groups), describe: number => {
     const group = data.groups[number];
-    const cells = group.ranked.slice(0, 20).map(entry => data.cells[entry[0]]);
-    const bars = cells.map(barOf);
+    const cells = group.cells.slice(0, 20);
+    const bars = cells.map(cell => cell.stages);
     const {shown, folded} = tandem.foldedStages(bars);
     const all = Object.values(bars[0]).reduce((sum, ms) => sum + ms, 0);
     const longest = Object.keys(bars[0]).sort((a, b) => bars[0][b] - bars[0][a])[0];
@@ -68,7 +66,7 @@ tandem.stagesFigure = data => {
     const datasets = shown.map(name => ({...colours(name), data: bars.map(bar => bar[name] ?? 0)}));
     if (folded.length) datasets.push({...colours(tandem.smallStages), data: bars.map(bar => folded.reduce((sum, name) => sum + (bar[name] ?? 0), 0))});
     const ordered = [...shown, ...folded];
-    return {title: all > 0 ? `The stage ${longest} takes ${Math.round(100 * bars[0][longest] / all)} % of the time of ${tandem.shortened(cells[0].label, 60)}${group.lead.which}`
+    return {title: all > 0 ? `The stage ${longest} takes ${Math.round(100 * bars[0][longest] / all)} % of the time of ${tandem.shortened(cells[0].label, 60)}${group.which}`
         : `There are no times by stage of ${tandem.shortened(cells[0].label, 60)}`,
       alt: `${group.title}: milliseconds a frame by stage, the device's time where a stage has any, otherwise the host's.`,
       notes: folded.length ? [{text: `Small stages, each below ${100 * tandem.smallShare} % of every bar: ${folded.join(", ")}.`}] : [],

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""The kit of all HTML pages: frame, style, tables, figures, lists and escaping."""
