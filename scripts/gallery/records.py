@@ -113,15 +113,3 @@ def submitted_files(results):
         for pattern in ("*.jsonl", "*.jsonl.xz")
         for path in (pathlib.Path(results) / "submitted").glob(pattern)
     )
-
-
-def mark_older(sources):
-    """In one file, the last record of a key that is ok counts. Records of several files all count: they are
-    of several people."""
-    newest = {}
-    for source in sources:
-        key = source.place.rpartition(":")[0], source.cell.key
-        if key not in newest or source.cell.status == "ok":
-            newest[key] = source
-    for source in sources:
-        source.cell.is_older = newest[source.place.rpartition(":")[0], source.cell.key] is not source

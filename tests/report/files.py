@@ -18,7 +18,7 @@ from tests.report.case import short
 from tandem import lines
 from tandem.errors import BadUse, OutputError
 from tandem.files import replace_whole
-from tandem.report import libraries
+from tandem.report import assembly
 from tandem.report.data import data_of
 from tandem.report.other_records import Simulations
 from tandem.report.reading import read_records
@@ -195,25 +195,24 @@ class Reading(Case):
 
 class Pages(Case):
     def test_libraries(self):
-        names = {**libraries.CHARTS, **libraries.SCENES}
+        names = {**assembly.CHARTS, **assembly.SCENES}
         with unittest.mock.patch.dict(os.environ, TANDEM_JAVASCRIPT=str(self.work / "javascript")):
             for name, package in names.items():
-                with self.assertRaisesRegex(
-                    BadUse,
-                    f"{os.path.basename(name)}, and there is no .*javascript/{name}; install {package} ",
-                ):
-                    libraries.scripts(names, PROGRAM, "tandem view")
+                missing = f"{os.path.basename(name)}, and there is no .*javascript/{name}; install {package} "
+                with self.assertRaisesRegex(BadUse, missing):
+                    assembly.open_page("", True, True, PROGRAM, "tandem view")
                 path = self.work / "javascript" / name
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_text(name)
-            self.assertEqual(libraries.scripts(names, PROGRAM, "tandem view"), list(names))
+            page = assembly.open_page("", True, True, PROGRAM, "tandem view")
+            self.assertEqual(page.scripts[:3], list(names))
         beside = self.work / "bin/tandem", self.work / "libexec/tandem/javascript/chart.js/chart.min.js"
         for path in beside:
             path.parent.mkdir(parents=True)
             path.write_text("beside")
         with unittest.mock.patch.dict(os.environ):
             os.environ.pop("TANDEM_JAVASCRIPT", None)
-            self.assertEqual(libraries.scripts(libraries.CHARTS, beside[0], ""), ["beside"])
+            self.assertEqual(assembly.open_page("", True, False, beside[0], "").scripts[0], "beside")
 
     def test_missing_libraries_end_both_commands(self):
         for command, what, named in (

@@ -4,13 +4,13 @@ lines.FIELD_ERRORS for a record that lacks fields of its schema."""
 
 import os
 
-from ..fields import at
+from ..fields import at, needed
 from ..pages.markup import element
 from ..pages.tables import Column, Row, number_text
 from ..text_lines import one_line
 from .conditions import conditions_text, sampling_text
 from .leads import ONE_ROUND
-from .numbers import count, is_number, number, rounded, text
+from .numbers import is_number, rounded
 
 MAX_FRAMES, MAX_LETTERS = 512, 2000
 CONTACT_ERRORS = ("depth_relative", "normal_degrees", "point", "hausdorff", "volume_relative")
@@ -30,7 +30,9 @@ SEARCHED = ("preset", "failure", "settings", "commit")  # details with words tha
 
 
 def _device(cell):
-    return " + ".join(f"{text(device['id'])} ({text(device['name'])})" for device in cell.record["devices"])
+    return " + ".join(
+        f"{needed(device, 'id')} ({needed(device, 'name')})" for device in cell.record["devices"]
+    )
 
 
 def shown_text(value):
@@ -49,20 +51,16 @@ def interval(cell):
     return [None if ms is None else rounded(ms) for ms in ends]
 
 
-def _sum(counts):
-    return None if counts is None else sum(map(number, counts))
-
-
 def _error(cell):
     """Errors of the answer against the exact truth; None if the record has none."""
     if cell.truth is None:
         return None
-    missed, meeting = count(cell.missed), count(cell.meeting)
-    candidates, false = number(cell.truth["candidates"]), number(cell.truth["false"])
+    share = lambda part, whole: rounded(part / whole) if whole > 0 else None
+    candidates, false = (needed(cell.truth, name, kind="integer") for name in ("candidates", "false"))
     error = {
-        "missed": missed,
-        "missed_share": rounded(missed / meeting) if meeting > 0 else None,
-        "false_share": rounded(false / candidates) if candidates > 0 else None,
+        "missed": cell.missed,
+        "missed_share": share(cell.missed, cell.meeting),
+        "false_share": share(false, candidates),
     }
     medians = {name: cell.error_of_contacts(name) for name in CONTACT_ERRORS}
     return error | {name: rounded(median) for name, median in medians.items() if is_number(median)}
@@ -83,7 +81,7 @@ def charted(cell, label):
         "label": label,
         "ms": interval(cell),
         "rounds": len(cell.rounds),
-        "first": count(cell.first_frame),
+        "first": cell.first_frame,
         "stages": {name: rounded(ms) for name, ms in cell.stage_ms.items() if ms is not None},
     }
     error = _error(cell)
@@ -109,7 +107,7 @@ def _half_interval(cell, time):
 
 def row(cell, label):
     """The row of a cell without its details."""
-    time, pairs = interval(cell), [_sum(cell.work(name)) for name in ("candidate_pairs", "contacts")]
+    time, pairs = interval(cell), map(cell.total_work, ("candidate_pairs", "contacts"))
     status = cell.status + (", recorded again" if cell.is_older else "")
     return Row(
         [
@@ -120,7 +118,7 @@ def row(cell, label):
             cell.algorithm,
             cell.described.get("k"),
             cell.scene,
-            f"{count(cell.first_frame)}:{count(cell.last_frame)}",
+            f"{cell.first_frame}:{cell.last_frame}",
             _device(cell),
             *map(number_text, (cell.of_stages("launches"), cell.of_stages("waits"), *pairs)),
         ]

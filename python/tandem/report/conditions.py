@@ -5,44 +5,31 @@ import json
 
 from .numbers import is_number
 
+GPU = {
+    "sm_mhz": "GPU at {} MHz",
+    "temperature_c": "{} °C",
+    "power_w": "{} W",
+    "other_processes": "other processes on it: {}",
+}
+PROCESSOR = {"mhz": "processor at {} MHz", "other_cores": "cores used by other processes: {}"}
+NOT_SAID = {"other_processes": "0"}
+
 
 def _numbers(value):
-    """Yields a number, or the numbers of a list. Skips None, which stands for missing readings."""
+    """The numbers of a value or a list, without None, which stands for missing readings."""
     if isinstance(value, list):
-        for one in value:
-            yield from _numbers(one)
-    elif is_number(value):
-        yield value
+        return [number for one in value for number in _numbers(one)]
+    return [value] if is_number(value) else []
 
 
-def _range(before, after, field, unit=""):
-    """ "1980 MHz" or "41 to 52 °C", from the readings before and after the rounds; empty if there are none."""
-    found = [
-        value
-        for reading in (before, after)
-        if isinstance(reading, dict)
-        for value in _numbers(reading.get(field))
-    ]
-    if not found:
-        return ""
-    low, high = f"{min(found):.4g}", f"{max(found):.4g}"
-    return f"{low}{'' if low == high else f' to {high}'}{unit}"
-
-
-def _gpu_texts(before, after):
-    clocks = _range(before, after, "sm_mhz", " MHz")
-    processes = _range(before, after, "other_processes")
-    return [
-        clocks and f"GPU at {clocks}",
-        _range(before, after, "temperature_c", " °C"),
-        _range(before, after, "power_w", " W"),
-        processes and processes != "0" and f"other processes on it: {processes}",
-    ]
-
-
-def _processor_texts(before, after):
-    clocks, busy = _range(before, after, "mhz", " MHz"), _range(before, after, "other_cores")
-    return [clocks and f"processor at {clocks}", busy and f"cores used by other processes: {busy}"]
+def _texts(readings, texts):
+    """Yields each text with the range of its field, such as "41 to 52 °C", in the readings that have it."""
+    readings = [reading for reading in readings if isinstance(reading, dict)]
+    for field, text in texts.items():
+        found = [number for reading in readings for number in _numbers(reading.get(field))]
+        ends = list(dict.fromkeys(f"{end(found):.4g}" for end in (min, max) if found))
+        if ends and ends != [NOT_SAID.get(field)]:
+            yield text.format(" to ".join(ends))
 
 
 def conditions_text(record):
@@ -51,15 +38,13 @@ def conditions_text(record):
     conditions = record.get("conditions")
     if not isinstance(conditions, dict):
         return "not recorded"
-    before, after = conditions["before"], conditions["after"]
-    parts = [part for gpus in zip(before["gpus"], after["gpus"]) for part in _gpu_texts(*gpus)]
-    parts += _processor_texts(before["processor"], after["processor"])
-    disturbed = conditions["disturbed"]
-    if disturbed:
-        parts.append(
-            f"{len(disturbed)} doubtful {'round' if len(disturbed) == 1 else 'rounds'}, the first: {disturbed[0]['why']}"
-        )
-    return ", ".join(part for part in parts if part)
+    moments = conditions["before"], conditions["after"]
+    parts = [text for gpus in zip(*(moment["gpus"] for moment in moments)) for text in _texts(gpus, GPU)]
+    parts += _texts([moment["processor"] for moment in moments], PROCESSOR)
+    if disturbed := conditions["disturbed"]:
+        rounds = f"{len(disturbed)} doubtful {'round' if len(disturbed) == 1 else 'rounds'}"
+        parts.append(f"{rounds}, the first: {disturbed[0]['why']}")
+    return ", ".join(parts)
 
 
 def sampling_text(record):
@@ -73,4 +58,4 @@ def sampling_text(record):
         is_number(outliers) and outliers != 0 and f"outliers: {json.dumps(outliers)}",
         is_number(drift) and f"drifted by {100 * drift:.2g} %",
     ]
-    return ", ".join(part for part in parts if part) or "no problems"
+    return ", ".join(filter(None, parts)) or "no problems"

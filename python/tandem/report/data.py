@@ -10,7 +10,7 @@ from . import parts
 from .cells import charted, curve, details, row
 from .groups import groups_of
 from .leads import title, which_text
-from .numbers import rounded
+from .numbers import ratio_row
 from .sentences import group_sentences, named_cells, summary_sentences
 from .sweeps import sweeps_of
 
@@ -38,13 +38,7 @@ def size_of(text):
 def _group(group, cells):
     named = named_cells(group, cells)
     ranked = [
-        [
-            one.cell,
-            rounded(one.ratio.value),
-            rounded(one.ratio.low),
-            rounded(one.ratio.high),
-            one.is_told_apart if one.has_interval else None,
-        ]
+        [one.cell, *ratio_row(one.ratio), one.is_told_apart if one.has_interval else None]
         for one in group.ranked
     ]
     which = "" if group.answers_differ else which_text(named)

@@ -8,7 +8,7 @@ from ..comparison.matching import VERDICTS
 from ..comparison.naming import label
 from ..comparison.notes import notes, summary
 from ..pages.tables import number_text
-from .numbers import optional, rounded
+from .numbers import ratio_row, rounded
 
 MAX_SHOWN = 3000  # number of cells; the page also has the total number
 LEVEL = 0.05
@@ -29,13 +29,11 @@ def _row(cell, name, number, old):
     row = {"label": name, "verdict": VERDICTS[cell.verdict], "cell": number, "against": _against(cell, old)}
     if cell.verdict == "another_answer":
         return row
-    ratio = cell.ratio
     return row | {
         "old": rounded(cell.before_ns / cell.before.frames / 1e6),
         "new": rounded(cell.after_ns / cell.after.frames / 1e6),
-        "ratio": [optional(value) for value in (ratio.value, ratio.low, ratio.high)],
-        "p": optional(cell.p_holm),
-        "would_show": optional(cell.least_effect),
+        "ratio": ratio_row(cell.ratio),
+        "p": None if cell.p_holm is None else rounded(cell.p_holm),
     }
 
 

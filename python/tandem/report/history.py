@@ -3,11 +3,12 @@
 moved, by the rule of 'tandem compare'."""
 
 import dataclasses
+import types
 
 from ..comparison.matching import CHANGES, VERDICTS, match  # needs scipy
 from ..comparison.naming import label
 from ..comparison.pooling import counting, pooled
-from .numbers import digits, optional, rounded
+from .numbers import digits, ratio_row, rounded
 
 LEVEL = 0.05  # probability of any false move in a page
 MAX_KEYS, MAX_NAMED = 500, 3
@@ -35,11 +36,6 @@ class History:
     programs: list
     points: dict
     left_out: int = 0
-
-
-@dataclasses.dataclass
-class _Side:
-    cells: list
 
 
 def _ordered(cells):
@@ -73,18 +69,12 @@ def _find_moves(points, programs):
     equally, and cells of a step by Holm's correction, so that LEVEL is that of the page."""
     base = {}
     for number in range(programs):
-        current = {
-            key: point
-            for key, all_points in points.items()
-            for point in all_points
-            if point.program == number
-        }
+        current = {key: one for key, own in points.items() for one in own if one.program == number}
         known = [key for key in current if key in base]
         if known:
+            sides = [base[key] for key in known], [current[key].cell for key in known]
             matched = match(
-                _Side([base[key] for key in known]),
-                _Side([current[key].cell for key in known]),
-                level=LEVEL / (programs - 1),
+                *(types.SimpleNamespace(cells=side) for side in sides), level=LEVEL / (programs - 1)
             )
             for key, compared in zip(known, matched.cells):
                 current[key].compared = compared
@@ -127,19 +117,11 @@ def _title(name, points, programs):
 
 
 def _point(point):
-    compared, row = (
-        point.compared,
-        [point.program, rounded(point.cell.median_ms), point.cell.all_rounds, point.cell.sessions or 1],
-    )
+    cell, compared = point.cell, point.compared
+    row = [point.program, rounded(cell.median_ms), cell.all_rounds, cell.sessions or 1]
     if compared is None:
         return [*row, None, None, ""]
-    ratio = compared.ratio
-    return [
-        *row,
-        ratio and [optional(value) for value in (ratio.value, ratio.low, ratio.high)],
-        point.moved,
-        VERDICTS[compared.verdict],
-    ]
+    return [*row, ratio_row(compared.ratio), point.moved, VERDICTS[compared.verdict]]
 
 
 def shown_history(cells):

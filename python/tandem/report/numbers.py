@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Formats numbers for the page, and checks types of values of records: a wrong type raises TypeError."""
+"""Rounds and formats numbers for the page."""
 
 
 def rounded(value):
@@ -7,8 +7,10 @@ def rounded(value):
     return float(f"{value:.6g}")
 
 
-def optional(value):
-    return None if value is None else rounded(value)
+def ratio_row(ratio):
+    """The value of a Ratio and the ends of its interval; None for None."""
+    ends = ratio and (ratio.value, ratio.low, ratio.high)
+    return ratio and [None if value is None else rounded(value) for value in ends]
 
 
 def digits(value):
@@ -19,21 +21,3 @@ def digits(value):
 
 def is_number(value):
     return isinstance(value, (int, float)) and not isinstance(value, bool)
-
-
-def number(value):
-    if not is_number(value):
-        raise TypeError(f"{value!r} is not a number")
-    return value
-
-
-def count(value):
-    if not isinstance(value, int) or isinstance(value, bool) or value < 0:
-        raise TypeError(f"{value!r} is not a count")
-    return value
-
-
-def text(value):
-    if not isinstance(value, str):
-        raise TypeError(f"{value!r} is not a text")
-    return value

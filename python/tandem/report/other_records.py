@@ -5,9 +5,9 @@ a record that lacks fields of its schema."""
 import dataclasses
 import os
 
-from ..fields import at
+from ..fields import at, checked, needed
 from .conditions import conditions_text
-from .numbers import count, is_number, number, rounded, text
+from .numbers import is_number, rounded
 
 KERNEL_NUMBERS = """
     share launches bytes operations bytes_per_s operations_per_s of_bytes of_operations over_floor
@@ -19,15 +19,15 @@ MAX_RUNS, MAX_STEPS = 40, 600
 
 
 def _device_text(device):
-    return f"{text(device['id'])} ({text(device['name'])})"
+    return f"{needed(device, 'id')} ({needed(device, 'name')})"
 
 
 def _name(record):
     name = (
-        f"{text(record['algorithm'])} {text(record['preset'])} k = {record['settings'].get('k', '?')}, {text(record['scene']['key'])}, "
-        f"on {_device_text(record['devices'][0])}"
+        f"{needed(record, 'algorithm')} {needed(record, 'preset')} k = {record['settings'].get('k', '?')}, "
+        f"{needed(record, 'scene', 'key')}, on {_device_text(record['devices'][0])}"
     )
-    return name if record["status"] == "ok" else f"{text(record['status'])}: {name}"
+    return name if record["status"] == "ok" else f"{needed(record, 'status')}: {name}"
 
 
 def _number_at(record, name):
@@ -38,9 +38,8 @@ def _number_at(record, name):
 def _kernel(kernel):
     ns = kernel["device_ns"]
     shown = {
-        "entry": text(kernel["entry"]),
-        "stage": text(kernel["stage"]),
-        "ms": [number(ns[name]) / 1e6 for name in ("median", "low", "high")],
+        **{name: needed(kernel, name) for name in ("entry", "stage")},
+        "ms": [needed(ns, name, kind="number") / 1e6 for name in ("median", "low", "high")],
     }
     return (
         shown | {name: _number_at(kernel, name) for name in KERNEL_NUMBERS} | {"bound": kernel.get("bound")}
@@ -50,10 +49,10 @@ def _kernel(kernel):
 def _ceiling_conditions(record):
     """Where the ceilings of a profile are from, and under which conditions they hold."""
     ceilings = record["ceilings"]
-    origin, date = text(ceilings["from"]), text(ceilings["date"])
+    origin, date = needed(ceilings, "from"), needed(ceilings, "date")
     if origin != "measured":
         return f"from {os.path.basename(origin)}, measured {date}; the file's record has their conditions"
-    cached = number(ceilings["cached_bytes"])
+    cached = needed(ceilings, "cached_bytes", kind="number")
     cache = f"; that of cached bytes with {cached:,.0f} bytes" if cached else ""
     return f"measured before the kernels in the same run, {date}{cache}. Conditions of the run: {conditions_text(record)}"
 
@@ -74,18 +73,16 @@ def shown_ceilings(record):
     device, environment = record["device"], record["environment"]
     commit = f"{environment.get('commit') or 'unknown'}{', with changes' if environment.get('dirty') else ''}"
     conditions = {
-        "measured on": text(environment["date"]),
-        "driver": text(device["driver"]),
-        "compiler": text(device["compiler"]),
+        "measured on": needed(environment, "date"),
+        **{name: needed(device, name) for name in ("driver", "compiler")},
         "commit": commit,
     }
-    shown = {"device": _device_text(device), "conditions": conditions}
     values = {
-        name: rounded(number(record[name]["median"]))
+        name: rounded(needed(record, name, "median", kind="number"))
         for name in sorted(record)
-        if isinstance(record[name], dict) and "median" in record[name]
+        if at(record, name, "median") is not None
     }
-    return shown | ({"values": values} if values else {})
+    return {"device": _device_text(device), "conditions": conditions, "values": values}
 
 
 @dataclasses.dataclass
@@ -121,8 +118,11 @@ class _Run:
 
 
 def _step(line):
-    times = [rounded(number(line["host_ns"][part]) / 1e6) for part in HOST_PARTS]
-    return [count(line["step"]), *times, count(line["contacts_found"]), count(line["contacts_kept"])]
+    times = [rounded(needed(line, "host_ns", part, kind="number") / 1e6) for part in HOST_PARTS]
+    step, *contacts = (
+        needed(line, name, kind="integer") for name in ("step", "contacts_found", "contacts_kept")
+    )
+    return [step, *times, *contacts]
 
 
 class Simulations:
@@ -132,12 +132,14 @@ class Simulations:
         self._runs = {}
 
     def add(self, line, path):
-        run = self._runs.setdefault((path, text(line.get("session", ""))), _Run(os.path.basename(path)))
+        run = self._runs.setdefault(
+            (path, checked(line.get("session", ""), "session")), _Run(os.path.basename(path))
+        )
         if line["kind"] == "step":
             run.add(_step(line))
             return
-        run.name = f"{text(at(line, 'scene', 'key'))}, contacts by {_name(line)}"
-        run.status = text(line["status"]) or "not ended"
+        run.name = f"{needed(line, 'scene', 'key')}, contacts by {_name(line)}"
+        run.status = needed(line, "status") or "not ended"
         if isinstance(line.get("failure"), str):
             run.failure = line["failure"]
 

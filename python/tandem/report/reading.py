@@ -27,19 +27,16 @@ class Records:
     notes: list = dataclasses.field(default_factory=list)
 
 
-def _mark_older(cells):
-    """Marks all records of a key as older, except the last one that is ok, or the last one if none is."""
-    newest = {}
+def mark_older(cells, key=lambda cell: cell.key):
+    """Marks all cells of a key as older, except the last one that is ok, or the last one if none is."""
+    newest = {key(cell): cell for cell in sorted(cells, key=lambda cell: cell.status == "ok")}
     for cell in cells:
-        if cell.key not in newest or cell.status == "ok" or newest[cell.key].status != "ok":
-            newest[cell.key] = cell
-    for cell in cells:
-        cell.is_older = newest[cell.key] is not cell
+        cell.is_older = newest[key(cell)] is not cell
 
 
 def _kept(cells, max_cells, notes):
     """At most `max_cells`. If there are more, first older records are left out, then the last ones."""
-    _mark_older(cells)
+    mark_older(cells)
     if len(cells) <= max_cells:
         return cells
     kept = [cell for cell in cells if not cell.is_older]

@@ -3,6 +3,7 @@
 times."""
 
 import dataclasses
+import itertools
 import math
 
 from ..verdicts import verdict_of
@@ -41,9 +42,7 @@ def _swept(cells, numbers):
         for name, value in cells[number].described.items():
             values.setdefault(name, set()).add(value)
     return [
-        name
-        for name, found in values.items()
-        if len(found) >= MIN_POINTS and all(_value(value) is not None for value in found)
+        name for name, found in values.items() if len(found) >= MIN_POINTS and None not in map(_value, found)
     ]
 
 
@@ -53,41 +52,27 @@ def _is_of_scene(setting, cell):
 
 def _of(setting, cell):
     """What a chart is of: cells of one scene with equal pairs, as far as the setting does not change them."""
-    names, settings = cell.names, cell.described
-    bounds = (
-        []
-        if setting in BOUNDS
-        else [
-            f"{name} = {settings[name]}"
-            for name, usual in BOUNDS.items()
-            if settings.get(name, usual) != usual
-        ]
-    )
-    scene = cell.scene_name if _is_of_scene(setting, cell) else cell.scene
-    return ", ".join([scene, names["frames"], *bounds, f"on {names['devices']} ({names['model']})"])
+    names, bounds = cell.names, {} if setting in BOUNDS else cell.described
+    parts = [cell.scene_name if _is_of_scene(setting, cell) else cell.scene, names["frames"]]
+    parts += [
+        f"{name} = {bounds[name]}" for name, usual in BOUNDS.items() if bounds.get(name, usual) != usual
+    ]
+    return ", ".join([*parts, f"on {names['devices']} ({names['model']})"])
 
 
 def _lines(setting, cells, numbers):
     """{what a chart is of: its lines of at least MIN_POINTS points}. Parameters of scenes are settings here,
     too."""
-    lines = {}
+    lines, charts = {}, {}
     for number in numbers:
         cell = cells[number]
-        if setting not in cell.described:
-            continue
-        names, rest = (cell.names, {name: value for name, value in cell.described.items() if name != setting})
-        key = (
-            _of(setting, cell),
-            names["algorithm"],
-            names["preset"],
-            names["driver"],
-            names["handling"],
-            *sorted(rest.items()),
-        )
-        lines.setdefault(key, _Line(names["algorithm"], names["preset"], rest)).points[
-            _value(cell.described[setting])
-        ] = number
-    charts = {}
+        if setting in cell.described:
+            rest = {name: value for name, value in cell.described.items() if name != setting}
+            names = [cell.names[name] for name in ("algorithm", "preset", "driver", "handling")]
+            line = lines.setdefault(
+                (_of(setting, cell), *names, *sorted(rest.items())), _Line(*names[:2], rest)
+            )
+            line.points[_value(cell.described[setting])] = number
     for (of, *_), line in lines.items():
         if len(line.points) >= MIN_POINTS:
             charts.setdefault(of, []).append(line)
@@ -96,7 +81,6 @@ def _lines(setting, cells, numbers):
 
 def _line_names(lines):
     """Algorithm, preset and those settings in which lines of the same algorithm differ."""
-    names = []
     for line in lines:
         alike = [other for other in lines if other.algorithm == line.algorithm]
         differing = [
@@ -105,8 +89,7 @@ def _line_names(lines):
             if any(other.rest.get(name) != value for other in alike)
         ]
         preset = [line.preset] if any(other.preset != line.preset for other in lines) else []
-        names.append(" ".join([line.algorithm, *preset, *differing]))
-    return names
+        yield " ".join([line.algorithm, *preset, *differing])
 
 
 def _words(setting, points, cells, recorded, has_lines):
@@ -127,30 +110,21 @@ def _words(setting, points, cells, recorded, has_lines):
 
 def _sweep(setting, of, lines, cells, recorded):
     shown = lines[:MAX_LINES]
-    names = _line_names(shown)
-    points = [
-        (name, value, line.points[value]) for name, line in zip(names, shown) for value in sorted(line.points)
+    own = [
+        {"name": name, "points": [[value, line.points[value]] for value in sorted(line.points)]}
+        for name, line in zip(_line_names(shown), shown)
     ]
-    heading, words = _words(setting, points, cells, recorded, len(shown) > 1)
-    return {
-        "setting": setting,
-        "of": of,
-        "all": len(lines),
-        "title": heading,
-        "words": words,
-        "lines": [
-            {"name": name, "points": [[value, line.points[value]] for value in sorted(line.points)]}
-            for name, line in zip(names, shown)
-        ],
-    }
+    points = [(line["name"], *point) for line in own for point in line["points"]]
+    heading, words = _words(setting, points, cells, recorded, len(own) > 1)
+    return {"setting": setting, "of": of, "all": len(lines), "title": heading, "words": words, "lines": own}
 
 
 def sweeps_of(cells, recorded=None):
     """Sweeps of Cells for the page, by setting. `recorded`: the RecordedVerdicts of their files."""
     numbers = [number for number, cell in enumerate(cells) if is_rankable(cell)]
     charts = (
-        (setting, of, lines)
+        (setting, *chart)
         for setting in _swept(cells, numbers)
-        for of, lines in _lines(setting, cells, numbers).items()
+        for chart in _lines(setting, cells, numbers).items()
     )
-    return [_sweep(*chart, cells, recorded) for chart, _ in zip(charts, range(MAX_SWEEPS))]
+    return [_sweep(*chart, cells, recorded) for chart in itertools.islice(charts, MAX_SWEEPS)]

@@ -77,6 +77,39 @@ tandem.differencesFigure = differences => differences && new tandem.Figure({id: 
       differences.cells.map(cell => [cell.label, cell.old, cell.new, ...(cell.ratio ? [cell.ratio[0], tandem.brackets(cell.ratio[1], cell.ratio[2])] : ["", ""]), cell.p, cell.verdict])]};
 }});
 
+/** The trend of a cell over commits. The program has compared them. */
+tandem.historyFigure = data => data.history && new tandem.Figure({id: "history", label: "cell", choices: data.history.cells.map((cell, value) => ({value, text: cell.label})), describe: number => {
+  const {programs, cells, left_out} = data.history;
+  const {title, label, points} = cells[number];
+  const texts = points.map(([program, ms, , , ratio, moved, verdict]) => `${programs[program]}: ${tandem.number(ms)} ms a frame` + (ratio ? `, ${tandem.number(ratio[0])} times the level before${(ratio[1] === null ? "" : " " + tandem.brackets(ratio[1], ratio[2]))}: ${verdict}` : verdict && `, ${verdict}`));
+  const at = isMoved => programs.map((_, program) => points.find(point => point[0] === program && (!isMoved || point[5]))?.[1] ?? null);
+  const ofProgram = programs.map((_, program) => texts[points.findIndex(point => point[0] === program)]);
+  return {title, alt: `${label}: milliseconds a frame over ${programs.length} commits.`, type: "line",
+    notes: [{text: "A commit moved if 'tandem compare' finds it slower, faster or with another answer than the first commit of the level before. Sessions of a commit are pooled." +
+      (left_out ? ` ${left_out} cells are left out.` : "")}],
+    data: {labels: programs, datasets: [{label: "moved", data: at(true), showLine: false, colour: 4, pointStyle: "rectRot", pointRadius: 9, texts: ofProgram},
+      {label: "ms a frame", data: at(false), spanGaps: true, colour: 1, borderWidth: 2, texts: ofProgram}]},
+    options: {scales: {x: {title: {display: true, text: "commit, the oldest first"}}, y: {...tandem.axis("ms a frame", points.map(point => point[1])), beginAtZero: true}}},
+    table: [label, ["commit", "ms a frame", "rounds", "sessions", "times the level before", "95 %", "verdict"], points.map(([program, ms, rounds, sessions, ratio, , verdict]) =>
+      [programs[program], ms, rounds, sessions, ratio ? ratio[0] : "", ratio ? tandem.brackets(ratio[1], ratio[2]) : "", verdict])]};
+}});
+
+/** Times over one numeric setting. */
+tandem.sweepsFigure = data => data.sweeps.length && new tandem.Figure({id: "sweeps", label: "setting and scene",
+  choices: data.sweeps.map(({setting, of, all}, value) => ({value, text: `${setting}: ${of} (${tandem.count(all, "line", "lines")})`})), describe: number => {
+    const {setting, of, all, title, words, lines} = data.sweeps[number];
+    const points = lines.map(line => line.points.map(([value, index]) => [value, data.cells[index]]));
+    const values = points.flat().map(point => point[0]);
+    const isNegative = values.some(value => value < 0);
+    const scale = isNegative ? {place: value => value, axis: tandem.axis(setting, values, {beginAtZero: false})} : tandem.logScale(setting, values, true);
+    return {title, alt: `${of}: milliseconds a frame over ${setting}, ${lines.length} of ${all} lines.`, notes: words ? [{text: words}] : [], type: "line",
+      data: {datasets: lines.map((line, i) => ({label: tandem.shortened(line.name, 60), data: points[i].map(([value, cell]) => ({x: scale.place(value), y: cell.ms[0]})),
+        intervals: points[i].map(([, cell]) => cell.rounds > 1 ? cell.ms.slice(1) : null),
+        texts: points[i].map(([value, cell]) => `${line.name}, ${setting} = ${tandem.number(value)}: ${tandem.timeText(cell)}`)}))},
+      options: {scales: {x: {...scale.axis, type: "linear"}, y: tandem.axis("ms a frame", points.flat().map(([, cell]) => cell.ms[0]))}},
+      table: [of, ["line", setting, "ms a frame", "95 %"], lines.flatMap((line, i) => points[i].map(([value, cell]) => [line.name, value, cell.ms[0], tandem.intervalText(cell)]))]};
+  }});
+
 tandem.charts = data => {
   data.groups.forEach((group, number) => Object.assign(group, {number, cells: group.ranked.map(entry => data.cells[entry[0]])}));
   for (const figure of [tandem.differencesFigure(data.differences), tandem.historyFigure(data), tandem.mediansFigure(data), tandem.sweepsFigure(data), tandem.stagesFigure(data), tandem.curvesFigure(data),
