@@ -2,6 +2,7 @@
 # test: cost=7 full=50
 """'tandem report' and 'tandem view': errors and signals of the export of the scene, options, missing packages."""
 
+import contextlib
 import json
 import os
 import pathlib
@@ -11,7 +12,7 @@ import tempfile
 import unittest
 import unittest.mock
 
-from tests.program import PROGRAM, SOURCE, Case, tandem
+from tests.program import PROGRAM, SOURCE, Case, ran, tandem
 from tests.report.case import Shown
 
 from tandem import files
@@ -26,29 +27,21 @@ class Commands(Case):
     """The part of both commands that concerns the scene, which another process of the program exports."""
 
     def test_errors_of_the_export_are_the_only_line(self):
-        out = ("-o", self.work / "none.html")
-        self.bad("the nearest is 'plates'", "view", "plats", *out)
-        self.bad("no scene; name one", "view", *out)
-        self.bad(
-            "frames 3:900", "report", H200 / "ceilings.jsonl", "--scene", "plates", "--frames", "3:900", *out
-        )
-        self.bad(
-            "--device all: contacts need one device", "view", "plates", "--contacts", "--device", "all", *out
-        )
-        self.bad(
-            "more --pose than --mesh",
-            "view",
-            "--mesh",
-            self.good,
-            "--pose",
-            "1 0 0 1 0 0 0",
-            "--pose",
-            "0 0 0 1 0 0 0",
-            *out,
-        )
-        self.bad("--every", "view", "plates", "--every", 0, *out)
-        self.bad("--frames requires --scene", "report", H200 / "ceilings.jsonl", "--frames", 0, *out)
-        self.assertFalse((self.work / "none.html").exists())
+        ceilings, out = H200 / "ceilings.jsonl", self.work / "none.html"
+        for error, words in (
+            ("the nearest is 'plates'", "view plats"),
+            ("no scene; name one", "view"),
+            ("frames 3:900", f"report {ceilings} --scene plates --frames 3:900"),
+            ("--device all: contacts need one device", "view plates --contacts --device all"),
+            (
+                "more --pose than --mesh",
+                f"view --mesh {self.good} --pose '1 0 0 1 0 0 0' --pose '0 0 0 1 0 0 0'",
+            ),
+            ("--every", "view plates --every 0"),
+            ("--frames requires --scene", f"report {ceilings} --frames 0"),
+        ):
+            self.bad(error, words, "-o", out)
+            self.assertFalse(out.exists())
 
     def test_sentences_of_the_page(self):
         """What the page says of each group and of all together, before the line that names the page."""
@@ -70,12 +63,8 @@ class Commands(Case):
             "sys.modules.update(dict.fromkeys(without))\nimportlib.util.find_spec = lambda name: None if name in without else find(name)\n"
             f"sys.path.insert(0, {str(SOURCE / 'python')!r})\nfrom tandem.commands import report\nsys.exit(report.main(sys.argv[2:], sys.argv[1]))"
         )
-        return subprocess.run(
-            ["/usr/bin/python3", "-c", text, PROGRAM, *words],
-            capture_output=True,
-            text=True,
-            env=os.environ | {"TANDEM_PYTHON_TRIED": "1"},
-        )
+        environment = os.environ | {"TANDEM_PYTHON_TRIED": "1"}
+        return ran(["/usr/bin/python3", "-c", text, PROGRAM, *words], env=environment)
 
     def test_one_session_needs_no_scipy(self):
         """Its verdict is recorded. Another verdict, and the sentence of a chart of a part of its cells, need scipy."""
@@ -96,35 +85,21 @@ class Commands(Case):
 
     def test_options_reach_the_export(self):
         page = self.work / "meshes.html"
-        status, out, errors = tandem(
-            "view",
-            "--mesh",
-            self.good,
-            "--mesh",
-            self.good,
-            "--pose",
-            "-1 0 0 1 0 0 0",
-            "--contacts",
-            "-o",
-            page,
-        )
+        meshes = f"view --mesh {self.good} --mesh {self.good} --pose '-1 0 0 1 0 0 0' --contacts"
+        status, out, errors = tandem(meshes, "-o", page)
         self.assertEqual((status, errors), (0, []))
         self.assertRegex(out, r"^.*meshes\.html: 1 frame of .*, 0\.9 MB\n$")
-        scene = json.loads(page.read_text().split('id="data-scene">')[1].split("</script>")[0])
+        scene = Shown(page.read_text()).json("scene")
         self.assertEqual((scene["bodies"], scene["frames"], len(scene["contacts"])), (2, [0], 1))
         status, out, _ = tandem("view", "plates", "--frames", "2:9", "--every", 3, "-o", page)
         self.assertRegex(out, r": 3 frames of plates")
-        done = subprocess.run(
-            [PROGRAM, "view", "plates", "--frames", "0"], cwd=self.work, capture_output=True, text=True
-        )
+        done = ran([PROGRAM, "view", "plates", "--frames", "0"], cwd=self.work)
         self.assertEqual((done.returncode, done.stderr, (self.work / "plates.html").exists()), (0, "", True))
 
     def end_group(self, group):
         """Cleans up after a failed test."""
-        try:
+        with contextlib.suppress(ProcessLookupError):
             os.killpg(group, signal.SIGKILL)
-        except ProcessLookupError:
-            pass
 
     def test_a_signal_ends_the_export_and_leaves_nothing(self):
         folder = self.work / "temporary"

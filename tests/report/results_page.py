@@ -4,7 +4,9 @@
 refused, hostile."""
 
 import copy
+import functools
 import json
+import re
 import shutil
 
 from tests.program import SOURCE
@@ -24,21 +26,12 @@ class ResultsPage(ScriptCase):
         shutil.rmtree(self.results, ignore_errors=True)
         (self.results / "cpu").mkdir(parents=True)
         (self.results / "submitted").mkdir()
+        work = lambda record: (record["scene"]["digest"], record["settings"]["k"])
         found = [
-            record
-            for record in committed("cpu/walks.jsonl")
-            if record["scene"]["name"] == "pile" and record["agreement"]
+            one for one in committed("cpu/walks.jsonl") if one["scene"]["name"] == "pile" and one["agreement"]
         ]
-        first = found[0]
-        self.base = [
-            record
-            for record in found
-            if record["scene"]["digest"] == first["scene"]["digest"]
-            and record["settings"]["k"] == first["settings"]["k"]
-        ][:3]
-        (self.results / "cpu/walks.jsonl").write_text(
-            "".join(json.dumps(record) + "\n" for record in self.base)
-        )
+        self.base = [record for record in found if work(record) == work(found[0])][:3]
+        self.file("results/cpu/walks.jsonl", self.base)
         former = page_script.history
         page_script.history = lambda root: {COMMIT}
         self.addCleanup(setattr, page_script, "history", former)
@@ -63,10 +56,15 @@ class ResultsPage(ScriptCase):
         return shown.rows, errors, out.read_text()
 
     def submitted(self, name, *records):
-        text = "".join(
-            (record if isinstance(record, str) else json.dumps(record)) + "\n" for record in records
-        )
-        (self.results / "submitted" / name).write_text(text)
+        texts = (record if isinstance(record, str) else json.dumps(record) for record in records)
+        (self.results / "submitted" / name).write_text("".join(f"{text}\n" for text in texts))
+
+    def changed(self, *path, **values):
+        """A submission with other values of fields of the part at a path."""
+        record = self.submission()
+        part = functools.reduce(dict.get, path, record)
+        part.update(values)
+        return record
 
     def test_a_right_answer_is_ranked_with_its_conditions(self):
         rows, errors, _ = self.page(0, "3 records, 0 submitted")
@@ -74,7 +72,7 @@ class ResultsPage(ScriptCase):
         record = self.submission()
         moment = {"gpus": [], "processor": {"mhz": 2345, "other_cores": 0.5}}
         self.assertLessEqual(
-            moment["processor"].keys(), set(json.dumps(gallery_schema()).replace('"', " ").split())
+            moment["processor"].keys(), set(re.findall(r"\w+", json.dumps(condition_schema())))
         )
         self.submitted("anna.jsonl", record)
         rows, errors, text = self.page(0, "4 records, 1 submitted (0 wrong, 0 not compared), 0 lines refused")
@@ -83,11 +81,8 @@ class ResultsPage(ScriptCase):
         self.assertTrue(own[0].isdigit())
         self.assertIn(own[7], COMMIT[:12])
         self.assertIn("1,647,388", own[4])
-        record["conditions"] = {
-            "disturbed": [{"round": 0, "why": "other work"}],
-            "before": moment,
-            "after": moment,
-        }
+        disturbed = [{"round": 0, "why": "other work"}]
+        record["conditions"] = {"disturbed": disturbed, "before": moment, "after": moment}
         self.assertIn(
             "processor at 2345 MHz, cores used by other processes: 0.5, 1 doubtful round, the first: other work",
             self.shown(record)[5],
@@ -102,18 +97,11 @@ class ResultsPage(ScriptCase):
         return next(row for row in Shown(page_of(gathered.sources, set(), [])).rows if row)
 
     def test_wrong_answers_are_shown_and_never_ranked(self):
-        for change in (
-            lambda record: [
-                part.update(digest={**part["digest"], "a": "00000000000000aa"})
-                for part in (record["work"], record["agreement"])
-            ],
-            lambda record: record["work"].update(
-                digest={**record["work"]["digest"], "b": "00000000000000bb"}
-            ),
-            lambda record: record.update(status="wrong"),
-        ):
-            record = self.submission()
-            change(record)
+        digest = self.base[0]["work"]["digest"]
+        both = self.changed("work", digest=digest | {"a": "00000000000000aa"})
+        both["agreement"]["digest"] = both["work"]["digest"]
+        one = self.changed("work", digest=digest | {"b": "00000000000000bb"})
+        for record in (both, one, self.changed(status="wrong")):
             self.submitted("bert.jsonl", record)
             rows, errors, text = self.page(1, "1 submitted (1 wrong, ")
             self.assertEqual(len(errors), 1)
@@ -145,39 +133,28 @@ class ResultsPage(ScriptCase):
         self.page(1, "2 submitted (2 wrong, 0 not compared)")
 
     def test_refused_lines(self):
-        def changed(change):
-            record = self.submission()
-            change(record)
-            return record
-
         nan = json.dumps(self.submission()).replace('"median": ', '"median": NaN, "unused": ', 1)
         for line, reason in (
-            (
-                changed(lambda record: record.update(algorithm=3)),
-                "does not match results/record.schema.json (/algorithm: ",
-            ),
-            (changed(lambda record: record.update(rank=1)), "does not match results/record.schema.json (/: "),
-            (changed(lambda record: record.pop("frames")), "does not match results/record.schema.json"),
+            (self.changed(algorithm=3), "does not match results/record.schema.json (/algorithm: "),
+            (self.changed(rank=1), "does not match results/record.schema.json (/: "),
+            (self.changed(frames=None), "does not match results/record.schema.json (/frames: "),
             (self.submission(commit="fedcba987654"), "commit fedcba987654 is not in the history"),
             (self.submission(commit=None), "commit unknown is not in"),
             (self.submission(commit="0"), "commit 0 is not in the history"),
             (self.submission(dirty=True), "built with changes that no commit has"),
-            (changed(lambda record: record["agreement"].update(missing=1)), "/agreement/missing: "),
+            (self.changed("agreement", missing=1), "/agreement/missing: "),
             (nan, "is not JSON"),
             (nan.replace("NaN", "1e999"), "is not JSON"),
             ("[]", "does not match"),
             ("{}", "does not match"),
             ("hello", "is not JSON"),
         ):
-            with self.subTest(reason):
-                self.submitted("frank.jsonl", line, self.submission())
-                rows, errors, text = self.page(
-                    1, "4 records, 1 submitted (0 wrong, 0 not compared), 1 lines refused"
-                )
-                self.assertEqual(len(errors), 1)
-                self.assertIn("frank.jsonl:1: ", errors[0])
-                self.assertIn(reason, errors[0])
-                self.assertIn("Refused lines</h2>", text)
+            self.submitted("frank.jsonl", line, self.submission())
+            counts = "4 records, 1 submitted (0 wrong, 0 not compared), 1 lines refused"
+            rows, [error], text = self.page(1, counts)
+            self.assertIn("frank.jsonl:1: ", error)
+            self.assertIn(reason, error)
+            self.assertIn("Refused lines</h2>", text)
         (self.results / "submitted/frank.jsonl").unlink()
         self.assertIn("cannot be read", self.page(1, "1 lines refused", self.work / "absent.jsonl")[1][0])
 
@@ -213,5 +190,5 @@ class ResultsPage(ScriptCase):
         self.assertEqual([source.place for source in gathered.sources if source.cell.status != "ok"], [])
 
 
-def gallery_schema():
+def condition_schema():
     return json.loads((SOURCE / "results/record.schema.json").read_text())["definitions"]["condition"]

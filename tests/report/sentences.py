@@ -21,6 +21,9 @@ from tandem.report.sweeps import sweeps_of
 
 ONE_MS = [1.0, 1.01, 0.99, 1.0, 1.02, 0.98, 1.0, 1.01, 0.99, 1.0]
 TWO_MS = [2 * ms for ms in ONE_MS]
+THREE_MS = [3 * ms for ms in ONE_MS]
+NEARLY_ONE_MS = [ONE_MS[4], ONE_MS[1] + 0.002, *ONE_MS[2:4], ONE_MS[0], *ONE_MS[5:]]
+PAIRS = Answer(3, "1", "2")
 
 
 def cell_of(algorithm, rounds, k="18", pairs=None, kind="gpu", stages=None, **changes):
@@ -49,97 +52,149 @@ def cell_of(algorithm, rounds, k="18", pairs=None, kind="gpu", stages=None, **ch
     return Cell(record | changes, "some.jsonl", 1)
 
 
-def groups_and_sentences(cells):
-    """The groups, and the sentences of the first."""
-    groups = groups_of(cells)
-    return groups, group_sentences(groups[0], cells)
+def first_group(cells):
+    """The first group and its sentences."""
+    group = groups_of(cells)[0]
+    return group, group_sentences(group, cells)
 
 
 class Sentences(unittest.TestCase):
-    def test_the_fastest_and_by_how_much(self):
-        cells = [cell_of("slow", TWO_MS), cell_of("quick", ONE_MS)]
-        groups, sentences = groups_and_sentences(cells)
-        self.assertEqual([group.title for group in groups], ["pile, frames 0:0, k = 18, on cuda:0 (GPU)"])
-        self.assertEqual([ranked.cell for ranked in groups[0].ranked], [1, 0])
-        self.assertIn(
-            "quick is the fastest of 2 with 1.000 ms a frame; the next, slow, takes 2.000 times as long [",
-            sentences,
-        )
-        summary = summary_sentences(groups, cells)
-        self.assertEqual(
-            "quick is the fastest in the only comparison; the best other algorithm takes 2.000 times as long.",
-            summary[0],
-        )
-        self.assertEqual(len(summary), 1)
+    def test_sentences_of_a_group(self):
+        failed = {"status": "failed", "failure": "no memory"}
+        older = cell_of("d", ONE_MS)
+        older.is_older = True
+        a, b = cell_of("a", ONE_MS), cell_of("b", TWO_MS)
+        for cells, ranked, parts in (
+            (
+                [b, a],
+                [1, 0],
+                ["a is the fastest of 2 with 1.000 ms a frame; the next, b, takes 2.000 times as long ["],
+            ),
+            (
+                [a, b, cell_of("c", THREE_MS)],
+                [0, 1, 2],
+                [
+                    "a is the fastest of 3 with 1.000 ms a frame; the next, b, takes 2.000",
+                    "The slowest, c, takes 3.000 times as long",
+                ],
+            ),
+            ([a, cell_of("b", NEARLY_ONE_MS)], [0, 1], ["is not told apart from it (1.000 times its time ["]),
+            (
+                [cell_of("a", [1.0]), cell_of("b", [2.0])],
+                [0, 1],
+                ["takes 2.000 times as long (one round: no interval)"],
+            ),
+            (
+                [b, cell_of("a", ONE_MS, status="wrong"), cell_of("c", ONE_MS, **failed), older],
+                [0],
+                [
+                    "b takes 2.000 ms a frame; there is nothing to compare it with.",
+                    "a was wrong, and is not ranked: its answer is not the reference's.",
+                    "c failed, and is not ranked: no memory.",
+                ],
+            ),
+            (
+                [cell_of("a", ONE_MS, pairs=PAIRS), cell_of("b", TWO_MS, pairs=Answer(4, "1", "2"))],
+                [0, 1],
+                ["none counts as the fastest"],
+            ),
+            ([cell_of("a", ONE_MS, pairs=Answer(0, "0", "0")), b], [1], []),
+            ([cell_of("a", [], **failed)], [], ["None of its cells has valid times."]),
+        ):
+            group, sentences = first_group(cells)
+            self.assertEqual([one.cell for one in group.ranked], ranked, sentences)
+            self.assertEqual([part for part in parts if part not in sentences], [], sentences)
+        self.assertEqual(first_group([a])[0].title, "pile, frames 0:0, k = 18, on cuda:0 (GPU)")
+        self.assertEqual(len(groups_of([a, cell_of("a", TWO_MS, "8")])), 2)  # other bounds
 
-    def test_the_slowest_of_three(self):
-        _, sentences = groups_and_sentences(
-            [cell_of("a", ONE_MS), cell_of("b", TWO_MS), cell_of("c", [3 * ms for ms in ONE_MS])]
-        )
-        self.assertIn("a is the fastest of 3 with 1.000 ms a frame; the next, b, takes 2.000", sentences)
-        self.assertIn("The slowest, c, takes 3.000 times as long", sentences)
+    def test_summaries(self):
+        a, b = cell_of("a", ONE_MS), cell_of("b", TWO_MS)
+        older = cell_of("d", ONE_MS)
+        older.is_older = True
+        bad = cell_of("b", ONE_MS, status="wrong"), cell_of("c", ONE_MS, status="failed", failure="x")
+        for cells, summary in (
+            (
+                [a, b],
+                [
+                    "a is the fastest in the only comparison; the best other algorithm takes 2.000 times as long."
+                ],
+            ),
+            (
+                [a, cell_of("b", NEARLY_ONE_MS), cell_of("a", ONE_MS, "8"), cell_of("b", TWO_MS, "8")],
+                [
+                    "a has the lowest median in all 2 comparisons; the best other algorithm takes 1.000 to 2.000 times "
+                    "as long, and is told apart from it in 1 of these."
+                ],
+            ),
+            (
+                [b, *bad, older],
+                [
+                    "1 failed and 1 gave a wrong answer: they are shown as such and never ranked.",
+                    "1 were recorded again later: the last record that is ok counts.",
+                ],
+            ),
+            ([cell_of("a", ONE_MS, pairs=PAIRS), cell_of("b", TWO_MS, pairs=Answer(4, "1", "2"))], []),
+            ([cell_of("a", ONE_MS, kind="cpu")], ["Times on processors do not predict times on a GPU."]),
+        ):
+            self.assertEqual(summary_sentences(groups_of(cells), cells), summary)
 
     def test_the_stage_that_makes_the_difference(self):
         """Compared with the first cell that takes longer with its whole interval; times of stages that are
         shorter count against others."""
-
-        def named(first, second, third=None):
-            cells = [cell_of("a", ONE_MS, stages=first), cell_of("b", TWO_MS, stages=second)] + (
-                [cell_of("c", [ms + 0.001 for ms in ONE_MS], stages=third)] if third else []
+        most, largest = (
+            f"{part} of the difference from b is in stage {{}}: {{}} ms a frame instead of {{}}."
+            for part in ("Most", "The largest part")
+        )
+        for first, second, third, sentence in (
+            (
+                {"traverse": 0.5, "contact": 0.4},
+                {"traverse": 1.3, "contact": 0.6},
+                {},
+                most.format("traverse", "0.500", "1.300"),
+            ),
+            ({"traverse": 0.5}, {"traverse": 0.4, "balance": 1.0}, {}, most.format("balance", "0", "1.000")),
+            (
+                {"traverse": 0.5, "contact": 0.3},
+                {"traverse": 0.9, "contact": 0.8, "refit": 0.3},
+                {},
+                largest.format("contact", "0.300", "0.800"),
+            ),
+            (
+                {"traverse": 0.5},
+                {"traverse": 1.5},
+                {"traverse": 3.0},
+                most.format("traverse", "0.500", "1.500"),
+            ),
+            ({}, {"traverse": 1.5}, {}, ""),
+            ({"traverse": 1.0}, {"traverse": 0.9}, {}, ""),
+        ):
+            cells = [cell_of("a", ONE_MS, stages=first), cell_of("b", TWO_MS, stages=second)]
+            cells += [cell_of("c", [ms + 0.001 for ms in ONE_MS], stages=third)] if third else []
+            self.assertEqual(
+                first_group(cells)[1].partition("[")[2].partition("]. ")[2].partition(" The s")[0], sentence
             )
-            return groups_and_sentences(cells)[1].partition("[")[2].partition("]. ")[2]
-
-        self.assertEqual(
-            named({"traverse": 0.5, "contact": 0.4}, {"traverse": 1.3, "contact": 0.6}),
-            "Most of the difference from b is in stage traverse: 0.500 ms a frame instead of 1.300.",
-        )
-        self.assertEqual(
-            named({"traverse": 0.5}, {"traverse": 0.4, "balance": 1.0}),
-            "Most of the difference from b is in stage balance: 0 ms a frame instead of 1.000.",
-        )
-        self.assertEqual(
-            named({"traverse": 0.5, "contact": 0.3}, {"traverse": 0.9, "contact": 0.8, "refit": 0.3}),
-            "The largest part of the difference from b is in stage contact: 0.300 ms a frame instead of 0.800.",
-        )
-        self.assertIn(
-            "from b is in stage traverse", named({"traverse": 0.5}, {"traverse": 1.5}, {"traverse": 3.0})
-        )
-        self.assertEqual(
-            [named({}, {"traverse": 1.5}), named({"traverse": 1.0}, {"traverse": 0.9})], ["", ""]
-        )
-
-    def test_indistinguishable_cells(self):
-        nearly = [ONE_MS[4], ONE_MS[1] + 0.002, *ONE_MS[2:4], ONE_MS[0], *ONE_MS[5:]]
-        groups, sentences = groups_and_sentences([cell_of("a", ONE_MS), cell_of("b", nearly)])
-        self.assertFalse(groups[0].ranked[1].is_told_apart)
-        self.assertIn("is not told apart from it (1.000 times its time [", sentences)
-
-    def test_one_round_is_not_enough(self):
-        groups, sentences = groups_and_sentences([cell_of("a", [1.0]), cell_of("b", [2.0])])
-        self.assertFalse(groups[0].ranked[1].is_told_apart)
-        self.assertIn("takes 2.000 times as long (one round: no interval)", sentences)
 
     def test_a_title_agrees_with_its_sentence(self):
         """Title, sentence and the words behind the name of the first come from one verdict."""
-        nearly = [ONE_MS[4], ONE_MS[1] + 0.002, *ONE_MS[2:4], ONE_MS[0], *ONE_MS[5:]]
+        lowest, one_round = ", which has the lowest median", "(one round: no interval)"
         for other, first, behind, word in (
             (
                 TWO_MS,
                 "a is the fastest; the next takes 2.000 times as long [",
                 ", the fastest",
-                "is the fastest of 2",
+                "fastest of 2",
             ),
             (
-                nearly,
+                NEARLY_ONE_MS,
                 "a and the next are not told apart: 1.000 times as long [",
-                ", which has the lowest median",
-                "is not told apart from it",
+                lowest,
+                "not told apart",
             ),
             (
                 [2.0],
-                "a has the lowest median; the next takes 2.000 times as long (one round: no interval)",
-                ", which has the lowest median",
-                "(one round: no interval)",
+                f"a has the lowest median; the next takes 2.000 times as long {one_round}",
+                lowest,
+                one_round,
             ),
         ):
             cells = [cell_of("a", ONE_MS[: len(other)]), cell_of("b", other)]
@@ -150,89 +205,27 @@ class Sentences(unittest.TestCase):
 
     def test_a_lower_paired_ratio_is_no_lead(self):
         """The second has the greater median, but most of its rounds are faster than those of the first."""
-        rounds = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 3.0, 3.0, 3.0, 3.0]
-        cells = [
-            cell_of("a", rounds, session="s"),
-            cell_of("b", [0.99 * ms + 0.0 for ms in rounds[:5]] + [1.2] + [2.9] * 4, session="s"),
-        ]
-        groups, sentences = groups_and_sentences(cells)
-        self.assertTrue(
-            groups[0].ranked[1].is_told_apart and groups[0].ranked[1].ratio.high < 1, groups[0].ranked
-        )
+        rounds = [1.0] * 6 + [3.0] * 4
+        other = [0.99] * 5 + [1.2] + [2.9] * 4
+        group, sentences = first_group([cell_of("a", rounds, session="s"), cell_of("b", other, session="s")])
+        self.assertTrue(group.ranked[1].is_told_apart and group.ranked[1].ratio.high < 1, group.ranked)
         self.assertIn("has the lowest median", sentences)
-
-    def test_wins_that_are_not_all_told_apart(self):
-        nearly = [ONE_MS[4], ONE_MS[1] + 0.002, *ONE_MS[2:4], ONE_MS[0], *ONE_MS[5:]]
-        cells = [
-            cell_of("a", ONE_MS),
-            cell_of("b", nearly),
-            cell_of("a", ONE_MS, "8"),
-            cell_of("b", TWO_MS, "8"),
-        ]
-        self.assertEqual(
-            summary_sentences(groups_of(cells), cells)[0],
-            "a has the lowest median in all 2 comparisons; "
-            "the best other algorithm takes 1.000 to 2.000 times as long, and is told apart from it in 1 of these.",
-        )
 
     def test_rounds_of_one_session_are_pairs(self):
         """Rounds that rise and fall together distinguish cells of one session, but not cells of two sessions."""
         tide = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]
-        for sessions, is_distinguished in ((("s", "s"), True), (("s", "t"), False)):
+        for sessions, is_distinguished in (("ss", True), ("st", False)):
             cells = [
                 cell_of(name, [factor * ms for ms in tide], session=session)
                 for name, factor, session in zip("ab", (1, 1.05), sessions)
             ]
             self.assertEqual(groups_of(cells)[0].ranked[1].is_told_apart, is_distinguished)
 
-    def test_failed_wrong_and_older_are_never_ranked(self):
-        cells = [
-            cell_of("a", TWO_MS),
-            cell_of("b", ONE_MS, status="wrong"),
-            cell_of("c", ONE_MS, status="failed", failure="no memory"),
-            cell_of("d", ONE_MS),
-        ]
-        cells[3].is_older = True
-        groups, sentences = groups_and_sentences(cells)
-        self.assertEqual([ranked.cell for ranked in groups[0].ranked], [0])
-        self.assertIn("a takes 2.000 ms a frame; there is nothing to compare it with.", sentences)
-        self.assertIn("b was wrong, and is not ranked: its answer is not the reference's.", sentences)
-        self.assertIn("c failed, and is not ranked: no memory.", sentences)
-        summary = summary_sentences(groups, cells)
-        self.assertIn("1 failed and 1 gave a wrong answer", summary[0])
-        self.assertIn("1 were recorded again later", summary[1])
-
     def test_of_many_failures_some_are_named(self):
-        _, sentences = groups_and_sentences(
-            [cell_of(f"a{i}", [], status="failed", failure="x" * 150) for i in range(40)]
-        )
-        self.assertTrue(sentences.startswith("None of its cells has valid times."), sentences)
+        cells = [cell_of(f"a{i}", [], status="failed", failure="x" * 150) for i in range(40)]
+        _, sentences = first_group(cells)
         self.assertTrue(sentences.endswith(" There are more."), sentences)
         self.assertLess(len(sentences), 1300)
-
-    def test_other_bounds_are_another_group(self):
-        self.assertEqual(len(groups_of([cell_of("a", ONE_MS), cell_of("a", TWO_MS, "8")])), 2)
-
-    def test_different_answers_have_no_fastest(self):
-        cells = [
-            cell_of("a", ONE_MS, pairs=Answer(3, "1", "2")),
-            cell_of("b", TWO_MS, pairs=Answer(4, "1", "2")),
-        ]
-        groups, sentences = groups_and_sentences(cells)
-        self.assertIn("none counts as the fastest", sentences)
-        self.assertEqual(summary_sentences(groups, cells), [])
-
-    def test_without_pairs_nothing_is_ranked(self):
-        groups, _ = groups_and_sentences(
-            [cell_of("a", ONE_MS, pairs=Answer(0, "0", "0")), cell_of("b", TWO_MS)]
-        )
-        self.assertEqual([ranked.cell for ranked in groups[0].ranked], [1])
-
-    def test_processors(self):
-        cells = [cell_of("a", ONE_MS, kind="cpu")]
-        self.assertEqual(
-            summary_sentences(groups_of(cells), cells), ["Times on processors do not predict times on a GPU."]
-        )
 
 
 def swept(setting, values, times, k="18", pairs=None, **changes):
@@ -250,46 +243,35 @@ def swept(setting, values, times, k="18", pairs=None, **changes):
 
 class Sweeps(unittest.TestCase):
     def test_a_line_and_its_verdict(self):
-        (sweep,) = sweeps_of(
-            swept("seed_threshold", ["1000", "0", "10"], [TWO_MS, [3 * ms for ms in ONE_MS], ONE_MS])
-        )
+        [sweep] = sweeps_of(swept("seed_threshold", ["1000", "0", "10"], [TWO_MS, THREE_MS, ONE_MS]))
         self.assertEqual(
             (sweep["setting"], sweep["of"], sweep["all"]),
             ("seed_threshold", "pile:bodies=3, frames 0:0, k = 18, on cuda:0 (GPU)", 1),
         )
         self.assertEqual(sweep["lines"], [{"name": "a", "points": [[0, 1], [10, 2], [1000, 0]]}])
-        self.assertTrue(
-            sweep["title"].startswith(
-                "seed_threshold = 10 is the fastest; the next takes 2.000 times as long ["
-            ),
-            sweep,
-        )
         self.assertIn(
             "seed_threshold = 10 is the fastest of 3 cells with 1.000 ms a frame; the next, seed_threshold = 1000, takes",
             sweep["words"],
         )
 
-    def test_one_round_has_no_fastest(self):
-        (sweep,) = sweeps_of(swept("seed_threshold", ["0", "1", "2"], [[1.0], [2.0], [3.0]]))
-        self.assertEqual(
-            sweep["title"],
-            "seed_threshold = 0 has the lowest median; the next takes 2.000 times as long (one round: no interval)",
-        )
-
-    def test_other_answers_and_other_bounds(self):
-        times = [ONE_MS, TWO_MS, TWO_MS]
-        cells = swept("seed_threshold", ["0", "1", "2"], times, pairs=3)
-        self.assertEqual(sweeps_of(cells)[0]["title"], "Answers differ: these times are of different work")
-        cells = swept("k", ["6", "8", "18"], times, pairs=3)
-        self.assertIn("k = 6 is the fastest", sweeps_of(cells)[0]["title"])
-        cells = [
-            *swept("seed_threshold", ["0", "1", "2"], times),
-            *swept("seed_threshold", ["0", "1", "2"], times, k="8"),
-        ]
-        self.assertEqual(
-            [(sweep["of"].split(", ")[2], sweep["all"]) for sweep in sweeps_of(cells)],
-            [("k = 18", 1), ("k = 8", 1)],
-        )
+    def test_titles(self):
+        times = [ONE_MS, TWO_MS, THREE_MS]
+        for setting, rounds, pairs, title in (
+            ("seed_threshold", times, 0, "= 1 is the fastest; the next takes 2.000 times as long ["),
+            (
+                "seed_threshold",
+                [[1.0], [2.0], [3.0]],
+                0,
+                "= 1 has the lowest median; the next takes 2.000 times",
+            ),
+            ("seed_threshold", times, 3, "Answers differ: these times are of different work"),
+            ("k", times, 3, "k = 1 is the fastest"),
+        ):
+            [sweep] = sweeps_of(swept(setting, ["1", "10", "100"], rounds, pairs=pairs))
+            self.assertIn(title, sweep["title"])
+        cells = [cell for k in ("18", "8") for cell in swept("seed_threshold", ["0", "1", "2"], times, k)]
+        found = [(sweep["of"].split(", ")[2], sweep["all"]) for sweep in sweeps_of(cells)]
+        self.assertEqual(found, [("k = 18", 1), ("k = 8", 1)])
 
     def test_what_is_no_sweep(self):
         times = [ONE_MS, TWO_MS, TWO_MS]
