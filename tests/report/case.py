@@ -77,7 +77,7 @@ class ReportCase(Case):
         status, out, errors = tandem("report", *arguments, "-o", page)
         self.assertEqual((status, len(errors)), (0, notes), (arguments, out, errors))
         self.assertTrue(out.startswith(f"{page}: "), out)
-        self.assertLess(page.stat().st_size, 8e6)
+        self.assertLess(page.stat().st_size, 16e6)
         return page
 
     def write(self, name, records):

@@ -8,7 +8,7 @@ from ..errors import BadUse
 from ..files import check_output
 from . import Parser, check_packages, check_together, run, warn
 
-MAX_BYTES = 7_900_000
+MAX_BYTES = 15_900_000
 
 
 def _parsed(arguments):

@@ -70,11 +70,6 @@ def commit(cell):
     return f"{cell.commit or 'unknown'}{', with changes' if cell.dirty else ''}"
 
 
-def curve(cell):
-    """Milliseconds of each frame; None for a single frame."""
-    return [rounded(ms) for ms in cell.frame_ms[:MAX_FRAMES]] if len(cell.frame_ms) > 1 else None
-
-
 def charted(cell, label):
     """The data of a cell for charts."""
     made = {
@@ -83,6 +78,7 @@ def charted(cell, label):
         "rounds": len(cell.rounds),
         "first": cell.first_frame,
         "stages": {name: rounded(ms) for name, ms in cell.stage_ms.items() if ms is not None},
+        "curve": [rounded(ms) for ms in cell.frame_ms[:MAX_FRAMES]] if len(cell.frame_ms) > 1 else None,
     }
     error = _error(cell)
     if error is None or made["ms"] is None or cell.status != "ok" or cell.is_older:
@@ -103,26 +99,6 @@ def _half_interval(cell, time):
     if len(cell.rounds) < 2 or None in time:
         return ONE_ROUND
     return f"±\u00a0{number_text(float(f'{(time[2] - time[1]) / 2:.2g}'))}"
-
-
-def row(cell, label):
-    """The row of a cell without its details."""
-    time, pairs = interval(cell), map(cell.total_work, ("candidate_pairs", "contacts"))
-    status = cell.status + (", recorded again" if cell.is_older else "")
-    return Row(
-        [
-            element("details", element("summary", label)),
-            time and time[0],
-            _half_interval(cell, time),
-            status if cell.status == "ok" else element("span", status, class_="bad"),
-            cell.algorithm,
-            cell.described.get("k"),
-            cell.scene,
-            f"{cell.first_frame}:{cell.last_frame}",
-            _device(cell),
-            *map(number_text, (cell.of_stages("launches"), cell.of_stages("waits"), *pairs)),
-        ]
-    )
 
 
 def time_text(cell):
@@ -147,8 +123,8 @@ def _stages_text(cell):
     return ", ".join(f"{name} {ms(one, 'device_ns')} (host {ms(one, 'host_ns')})" for name, one in stages)
 
 
-def details(cell, against=None):
-    """All data of a cell as Html. against: its comparison with another file."""
+def details(cell, against):
+    """All data of a cell as Html."""
     rounds = ", ".join(number_text(ns / cell.frames / 1e6) for ns in cell.times())
     errors = (_error(cell) or {}).items()
     facts = {
@@ -175,5 +151,26 @@ def details(cell, against=None):
             [element("dt", name), element("dd", value, class_="words" if name in SEARCHED else None)]
             for name, value in facts.items()
             if value
+        ],
+    )
+
+
+def row(cell, label, against=None):
+    """The row of a cell, with its details. against: its comparison with another file."""
+    time, pairs = interval(cell), map(cell.total_work, ("candidate_pairs", "contacts"))
+    status = cell.status + (", recorded again" if cell.is_older else "")
+    return Row(
+        more=details(cell, against),
+        values=[
+            element("details", element("summary", label)),
+            time and time[0],
+            _half_interval(cell, time),
+            status if cell.status == "ok" else element("span", status, class_="bad"),
+            cell.algorithm,
+            cell.described.get("k"),
+            cell.scene,
+            f"{cell.first_frame}:{cell.last_frame}",
+            _device(cell),
+            *map(number_text, (cell.of_stages("launches"), cell.of_stages("waits"), *pairs)),
         ],
     )

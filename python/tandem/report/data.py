@@ -7,7 +7,7 @@ import json
 from ..kinds import fields_of
 from ..pages.markup import markup
 from . import parts
-from .cells import charted, curve, details, row
+from .cells import charted, row
 from .groups import groups_of
 from .leads import title, which_text
 from .numbers import ratio_row
@@ -25,6 +25,10 @@ class PageData:
     cells: int
     notes: list
     sentences: list
+
+    @property
+    def size(self):
+        return size_of(self.json) + sum(size_of(markup(section.content)) for section in self.sections)
 
 
 def dumped(value):
@@ -60,90 +64,46 @@ def _history(cells):
     return shown_history(cells)
 
 
-class _Cells:
-    """What a page has of cells: `data` for charts, `rows` of the table, and `size` in bytes. Details and curves
-    come with fit()."""
-
-    def __init__(self, cells, verdicts):
-        self.cells, self.groups = cells, groups_of(cells, verdicts)
-        labels = {
-            number: label or cells[number].algorithm
-            for group in self.groups
-            for number, label in zip(group.cells, group.labels)
-        }
-        self.rows, self.details, charts = [], [None] * len(cells), []
-        for number, cell in enumerate(cells):
-            with fields_of("cell", cell.location):
-                self.rows.append(row(cell, labels[number]))
-                charts.append(charted(cell, labels[number]))
-        history, moves = _history(cells)
-        self.words = [*summary_sentences(self.groups, cells), *moves]
-        self.sentences = [group_sentences(group, cells) for group in self.groups]
-        self.data = {
-            "cells": charts,
-            "groups": [_group(group, cells) for group in self.groups],
-            "sweeps": sweeps_of(cells, verdicts),
-            "history": history,
-        }
-        shown = self.summary([], None).content, parts.cells_part(self.rows, self.details).content
-        self.size = sum(map(size_of, (dumped(self.data), *map(markup, shown))))
-
-    def summary(self, notes, differences):
-        return parts.summary(self.groups, self.sentences, self.words, notes, differences)
-
-    def fit(self, free_bytes, against):
-        """Adds details and curves of cells as far as they fit. Returns the number of those left out."""
-        left_out = 0
-        for number, cell in enumerate(self.cells):
-            with fields_of("cell", cell.location):
-                shown = details(cell, against.get(number)), curve(cell)
-            for value, kept, name in zip(
-                shown, (self.details, self.data["cells"][number]), (number, "curve")
-            ):
-                size = size_of(dumped(value)) if value else 0
-                if size > free_bytes:
-                    left_out += 1
-                else:
-                    free_bytes -= size
-                    kept[name] = value
-        return left_out
-
-
-def _fitting_cells(records, max_bytes, against):
-    """_Cells of the first cells, as many as fit. Adds notes on what is left out."""
-    all_cells = len(records.cells)
-    made = _Cells(records.cells, records.verdicts)
-    while made.size > max_bytes and records.cells:
-        kept = int(0.95 * len(records.cells) * max(max_bytes, 0) / made.size)
-        records.cells = records.cells[:kept]
-        made = _Cells(records.cells, records.verdicts)
-    if len(records.cells) < all_cells:
-        records.notes.append(
-            f"the last {all_cells - len(records.cells)} of {all_cells} cells are left out, so that the page stays small; "
-            "give fewer files or fewer lines"
-        )
-    left_out = made.fit(max_bytes - made.size, against)
-    if left_out:
-        records.notes.append(
-            f"times by frame or details of some cells are left out ({left_out} of them), so that the page stays small"
-        )
-    return made
+def _made(records, differences):
+    """PageData of all cells of the records."""
+    cells, groups = records.cells, groups_of(records.cells, records.verdicts)
+    against = {one["cell"]: one["against"] for one in differences["cells"]} if differences else {}
+    labels = {number: label for group in groups for number, label in zip(group.cells, group.labels)}
+    rows, charted_cells = [], []
+    for number, cell in enumerate(cells):
+        with fields_of("cell", cell.location):
+            label = labels[number] or cell.algorithm
+            rows.append(row(cell, label, against.get(number)))
+            charted_cells.append(charted(cell, label))
+    history, moves = _history(cells)
+    words = [*summary_sentences(groups, cells), *moves]
+    sentences = [group_sentences(group, cells) for group in groups]
+    sections = [
+        parts.summary(groups, sentences, words, records.notes, differences),
+        parts.Section("charts", "Charts", is_hidden=True),
+        *([parts.cells(rows)] if rows else []),
+        *([parts.ceilings(records.ceilings)] if records.ceilings else []),
+    ]
+    data = {
+        "cells": charted_cells,
+        "groups": [_group(group, cells) for group in groups],
+        "sweeps": sweeps_of(cells, records.verdicts),
+        "history": history,
+        "differences": differences,
+        "profiles": records.profiles,
+        "simulations": records.simulations,
+    }
+    texts = [f"{group.title}: {sentence}" for group, sentence in zip(groups, sentences)]
+    return PageData(dumped(data), sections, len(cells), records.notes, [*texts, *words])
 
 
 def data_of(records, max_bytes, differences=None):
-    """PageData of at most about `max_bytes`. Larger data are cut: curves and details of cells are left out
-    first, then the last cells. `differences`: from differences.py."""
-    rest = {name: getattr(records, name) for name in ("profiles", "simulations")} | {
-        "differences": differences
-    }
-    against = {one["cell"]: one["against"] for one in (differences or {"cells": ()})["cells"]}
-    made = _fitting_cells(records, max_bytes - size_of(dumped(rest)), against)
-    sections = [made.summary(records.notes, differences)]
-    sections.append(parts.Section("charts", "Charts", is_hidden=True))
-    if made.rows:
-        sections.append(parts.cells_part(made.rows, made.details))
-    if records.ceilings:
-        sections.append(parts.ceilings(records.ceilings))
-    json_text = dumped(made.data | rest)
-    sentences = [f"{group.title}: {words}" for group, words in zip(made.groups, made.sentences)] + made.words
-    return PageData(json_text, sections, len(records.cells), records.notes, sentences)
+    """PageData of at most `max_bytes`. Of larger data the last cells are left out. `differences`: from
+    differences.py."""
+    made, count, notes = _made(records, differences), len(records.cells), records.notes
+    while made.size > max_bytes and made.cells:
+        records.cells = records.cells[: int(0.95 * made.cells * max(max_bytes, 0) / made.size)]
+        left_out = f"the last {count - len(records.cells)} of {count} cells are left out, so that the page stays small"
+        records.notes = [*notes, f"{left_out}; give fewer files or fewer lines"]
+        made = _made(records, differences)
+    return made

@@ -3,7 +3,7 @@
 
 from ..pages.frame import Section
 from ..pages.markup import element, items, paragraphs
-from ..pages.tables import Row, table
+from ..pages.tables import table
 from .cells import COLUMNS
 
 SHOWN_GROUPS = 10  # of the summary; readers open the others
@@ -31,11 +31,10 @@ def summary(groups, sentences, words, notes, differences):
     return Section("summary", "Summary", [*shown, element("p", HOW, class_="quiet")])
 
 
-def cells_part(rows, details):
-    """`details`: Html for each row, or None for a cell whose details are left out."""
-    rows = [Row(row.values, more=more or element("p", "left out")) for row, more in zip(rows, details)]
-    shown = table("Every cell", COLUMNS, rows, heading=False, notes=[CELLS], sorts=True)
-    return Section("cells", "Every cell", shown)
+def cells(rows):
+    return Section(
+        "cells", "Every cell", table("Every cell", COLUMNS, rows, heading=False, notes=[CELLS], sorts=True)
+    )
 
 
 def ceilings(devices):
