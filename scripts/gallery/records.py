@@ -88,28 +88,29 @@ def _check_of(gathered, commits):
 
 def add_file(gathered, path, name, commits=None):
     """Adds the cells of a file to Gathered. name: how the page calls it. commits: hashes of the history, for
-    submitted files; committed files had their review. Raises RecordError for a committed file with an error,
-    and for a file that cannot be read."""
+    submitted files; committed files had their review. Raises RecordError for a committed file with an error."""
     torn = gathered.refused.append if commits is not None else lambda message: None
-    for number, record in lines.numbered(str(path), torn, _check_of(gathered, commits)):
-        if not any(record == other.cell.record for other in gathered.sources):
-            source = Source(Cell(record, path, number), f"{name}:{number}", commits is not None)
-            gathered.sources.append(source)
+    try:
+        for number, record in lines.numbered(str(path), torn, _check_of(gathered, commits)):
+            if not any(record == other.cell.record for other in gathered.sources):
+                source = Source(Cell(record, path, number), f"{name}:{number}", commits is not None)
+                gathered.sources.append(source)
+    except lines.RecordError as problem:
+        if commits is None:
+            raise
+        gathered.refused.append(str(problem))
 
 
-def committed_files(results):
-    """Files of records of results/*/ that were timed, without submitted ones."""
-    found = [
-        path for pattern in ("*/*.jsonl", "*/*.jsonl.xz") for path in pathlib.Path(results).glob(pattern)
-    ]
-    return sorted(
-        path for path in found if path.parent.name != "submitted" and not path.name.startswith(ERRORS_ONLY)
-    )
-
-
-def submitted_files(results):
-    return sorted(
-        path
-        for pattern in ("*.jsonl", "*.jsonl.xz")
-        for path in (pathlib.Path(results) / "submitted").glob(pattern)
-    )
+def gathered_from(results, files, commits):
+    """Gathered of the committed files of records in results/*/ that were timed, then of submitted ones: those of
+    results/submitted, and `files`. Raises RecordError."""
+    patterns, folder = ("*/*.jsonl", "*/*.jsonl.xz"), pathlib.Path(results)
+    found = sorted(path for pattern in patterns for path in folder.glob(pattern))
+    submitted = [path for path in found if path.parent.name == "submitted"]
+    gathered = Gathered()
+    for path in found:
+        if path not in submitted and not path.name.startswith(ERRORS_ONLY):
+            add_file(gathered, path, str(path.relative_to(results)))
+    for path in [*submitted, *map(pathlib.Path, files)]:
+        add_file(gathered, path, path.name, commits)
+    return gathered

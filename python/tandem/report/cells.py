@@ -42,13 +42,8 @@ def shown_text(value):
 
 def interval(cell):
     """Milliseconds per frame: [median, low, high]; None if there are no times."""
-    if not is_number(at(cell.record, "total_ns", "median")):
-        return None
-    ends = (
-        cell.ms(end) if is_number(at(cell.record, "total_ns", end)) else None
-        for end in ("median", "low", "high")
-    )
-    return [None if ms is None else rounded(ms) for ms in ends]
+    ends = [cell.ms(end) for end in ("median", "low", "high")]
+    return None if ends[0] is None else [None if ms is None else rounded(ms) for ms in ends]
 
 
 def _error(cell):

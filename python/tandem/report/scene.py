@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Gets the geometry of a scene by the program's export."""
 
+import contextlib
 import dataclasses
 import json
 import os
@@ -54,40 +55,6 @@ class ShownScene:
     frames: int
 
 
-class _SignalForwarder:
-    """Context manager that forwards signals which end this process to the program that it runs."""
-
-    def __init__(self):
-        self.signalled, self.process = 0, None
-
-    def __enter__(self):
-        self.before = {which: signal.getsignal(which) for which in SIGNALS}
-        for which, handler in self.before.items():
-            if handler != signal.SIG_IGN:
-                signal.signal(which, self._end)
-        return self
-
-    def __exit__(self, *_):
-        for which, handler in self.before.items():
-            signal.signal(which, handler)
-
-    def _end(self, number, _):
-        self.signalled = self.signalled or number
-        if self.process is not None:
-            self.process.terminate()
-
-    def run(self, words, page):
-        """Runs a program, with the page's file in its environment. Returns its exit code, or 128 plus its
-        signal. Discards its standard output."""
-        self.process = subprocess.Popen(
-            words, stdout=subprocess.DEVNULL, env=os.environ | ({"TANDEM_PAGE": page} if page else {})
-        )
-        if self.signalled:
-            self.process.terminate()
-        code = self.process.wait()
-        return 128 - code if code < 0 else code
-
-
 def words_of(scene, options):
     """Arguments of tandem export for those options of a command line. Absent options are None."""
     words = []
@@ -102,22 +69,46 @@ def words_of(scene, options):
     ]
 
 
-def _exported(forwarder, program, words, path, page):
-    code = forwarder.run([program, "export", f"--geometry={path}", *words], page)
-    if code > 128 and not forwarder.signalled:
-        raise OutputError(f"tandem export was ended by signal {code - 128}")
-    if code != 0:
-        raise ExportEnded(128 + forwarder.signalled if forwarder.signalled else code)
-    return path.read_text(encoding="utf-8").rstrip("\n")
+class _Running:
+    """The program that this process runs, and the number of the first signal that asked this process to end."""
+
+    process, signalled = None, 0
+
+    def end(self, number, _):
+        self.signalled = self.signalled or number
+        if self.process is not None:
+            self.process.terminate()
+
+
+def _run(running, words, page):
+    """The exit code of a program, which gets the page's file in its environment, or 128 plus its signal."""
+    environment = os.environ | ({"TANDEM_PAGE": page} if page else {})
+    running.process = subprocess.Popen(words, stdout=subprocess.DEVNULL, env=environment)
+    if running.signalled:
+        running.process.terminate()
+    code = running.process.wait()
+    return 128 - code if code < 0 else code
 
 
 def shown_scene(program, words, page=None):
     """ShownScene of an export with the arguments `words`. `page`: the file of the page, which the program
     refuses if it is an input. Raises ExportEnded, BadUse and OutputError."""
-    with _SignalForwarder() as forwarder:  # for as long as the folder exists: a signal never leaves it behind
+    running = _Running()
+    with (
+        contextlib.ExitStack() as handlers
+    ):  # for as long as the folder exists: a signal never leaves it behind
+        for which in SIGNALS:
+            if signal.getsignal(which) != signal.SIG_IGN:
+                handlers.callback(signal.signal, which, signal.signal(which, running.end))
         with temporary_folder() as folder:
-            text = _exported(forwarder, program, words, pathlib.Path(folder) / "scene.json", page)
-        if forwarder.signalled:
-            raise ExportEnded(128 + forwarder.signalled)
+            path = pathlib.Path(folder) / "scene.json"
+            code = _run(running, [program, "export", f"--geometry={path}", *words], page)
+            text = path.read_text(encoding="utf-8").rstrip("\n") if code == 0 else ""
+    if running.signalled:
+        raise ExportEnded(128 + running.signalled)
+    if code > 128:
+        raise OutputError(f"tandem export was ended by signal {code - 128}")
+    if code != 0:
+        raise ExportEnded(code)
     scene = json.loads(text)
     return ShownScene(text, scene["name"], scene["key"], scene["of_frames"])
