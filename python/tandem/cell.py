@@ -20,6 +20,17 @@ RELEASE_KERNELS = """
     generate_contacts
 """.split()
 
+# Settings that determine the candidate pairs, and their default values, which titles leave out.
+BOUNDS = {
+    "k": "",
+    "axes": "standard",
+    "precision": "float",
+    "rounding": "safe",
+    "placement": "rounded",
+    "origin": "world",
+    "output": "pairs",
+}
+
 
 @dataclasses.dataclass(frozen=True)
 class Answer:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Which answers of records are right: digests of equal work are equal on every machine."""
 
-from tandem.report.groups import BOUNDS
+from tandem.cell import BOUNDS
 
 # Besides the bounds: settings that determine the pairs, with the value of records that do not have them. With
 # output=contacts, the narrow phase does too.

@@ -3,19 +3,9 @@
 
 import dataclasses
 
+from ..cell import BOUNDS
 from ..comparison.naming import label
 from ..verdicts import verdict_of
-
-# Settings that determine the candidate pairs, and their default values, which titles leave out.
-BOUNDS = {
-    "k": "",
-    "axes": "standard",
-    "precision": "float",
-    "rounding": "safe",
-    "placement": "rounded",
-    "origin": "world",
-    "output": "pairs",
-}
 
 
 @dataclasses.dataclass

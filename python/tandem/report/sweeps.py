@@ -6,8 +6,9 @@ import dataclasses
 import itertools
 import math
 
+from ..cell import BOUNDS
 from ..verdicts import verdict_of
-from .groups import BOUNDS, is_rankable
+from .groups import is_rankable
 from .leads import Named, lead_sentence, title
 
 MAX_LINES = 8  # of a chart, the first ones

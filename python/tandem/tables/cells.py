@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Tables of cells: stages for each scene, and ratios of the time of gProximity to that of chunked."""
 
+from ..cell import BOUNDS
 from ..fields import at
 from .naming import Named, labels
 from .wording import notes, number, table, with_interval
@@ -9,16 +10,6 @@ DEVICE = ("transform", "refit", "seed", "traverse", "balance", "contact", "sort"
 HOST = ("preprocess", "postprocess", "exchange")
 STAGES = (*DEVICE[:2], "broad", *DEVICE[2:7], *HOST, *DEVICE[7:])
 KERNELS = DEVICE[:7]
-# Cells with different bounds have different candidate pairs and separate tables. The title has the settings
-# that are not at these defaults.
-BOUNDS = {
-    "k": None,
-    "axes": "standard",
-    "precision": "float",
-    "rounding": "safe",
-    "placement": "rounded",
-    "origin": "world",
-}
 MAX_RATIOS = 200  # per table; with more, each cell is compared only with the fastest chunked cell
 
 
@@ -41,7 +32,10 @@ class Row(Named):
         self.notes = notes(cell.record)
         is_ranked = cell.status == "ok" and self.pairs and self.total
         self.rank = self.once((self.devices, cell.asked.get("output"))) if is_ranked else None
-        bounds = [name for name, usual in BOUNDS.items() if cell.asked.get(name, usual) != usual]
+        # Cells with different bounds have different candidate pairs and separate tables.
+        bounds = [
+            name for name in BOUNDS if name != "output" and cell.asked.get(name, BOUNDS[name]) != BOUNDS[name]
+        ]
         self.heading = self.once(self.heading + "".join(f", {name} = {cell.asked[name]}" for name in bounds))
 
     def _read_stages(self, stages, frames):
@@ -174,7 +168,7 @@ def text(rows, devices):
     for heading, own in groups.items():
         pairs = sorted({row.pairs for row in own if row.pairs is not None})
         count = " to ".join(f"{value:,.0f}" for value in ([pairs[0], pairs[-1]] if len(pairs) > 1 else pairs))
-        named = labels(own, devices, BOUNDS)
+        named = labels(own, devices, BOUNDS.keys() - {"output"})
         parts += [
             f"\n### {heading}\n\n{count or 'Unknown'} candidate pairs a frame.\n\n",
             _stage_table(own, named),
