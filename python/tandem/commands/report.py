@@ -32,19 +32,17 @@ def _parsed(arguments):
     return options
 
 
-def _counted(number, one, more):
-    return f"{number} {one if number == 1 else more}"
-
-
-def _contents(cells, records, files):
+def _contents(cells, records):
     """ "36 cells of 2 files", with the numbers of other records."""
     counts = (
         (cells, "cell", "cells"),
         (len(records.profiles), "profile", "profiles"),
         (len(records.simulations), "simulation", "simulations"),
         (len(records.ceilings), "device's ceilings", "devices' ceilings"),
+        (len(records.files), "file", "files"),
     )
-    return f"{', '.join(_counted(*one) for one in counts if one[0])} of {_counted(files, 'file', 'files')}"
+    *parts, files = (f"{number} {one if number == 1 else more}" for number, one, more in counts if number)
+    return f"{', '.join(parts)} of {files}"
 
 
 def _made_by(program):
@@ -55,24 +53,12 @@ def _made_by(program):
     return version, datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
 
 
-def _add_scene(page, options, program):
-    """Adds the scene to the page, if one is given. Returns the text for the output line, or an empty text."""
-    from ..report.assembly import SCENE
-    from ..report.scene import shown_scene, words_of
-
-    if not options.scene:
-        return ""
-    page.sections.append(SCENE)
-    scene = shown_scene(program, words_of(options.scene, options), options.output)
-    page.data["scene"] = scene.json
-    return f", {scene.key}"
-
-
 def _write(options, program):
     """Writes the page and returns the output line. Raises scene.ExportEnded and the errors that run() handles."""
     from ..pages.frame import html_of
     from ..pages.markup import element
-    from ..report.assembly import open_page, write_page
+    from ..report.assembly import SCENE, open_page, write_page
+    from ..report.scene import shown_scene, words_of
 
     if options.against and len(options.files) != 1:
         raise BadUse(
@@ -90,10 +76,12 @@ def _write(options, program):
         from ..report.differences import differences
 
         compared = differences(options.against, options.files[0], records.cells)
-    scene = _add_scene(page, options, program)
+    scene = shown_scene(program, words_of(options.scene, options), options.output) if options.scene else None
+    if scene:
+        page.data["scene"] = scene.json
     free_bytes = MAX_BYTES - empty - sum(map(size_of, page.data.values()))
     data = data_of(records, free_bytes, compared)
-    page.data["records"], page.sections[:0] = data.json, data.sections
+    page.data["records"], page.sections = data.json, data.sections + [SCENE] * bool(scene)
     version, date = _made_by(program)
     against = f", against {compared['old']}" if compared else ""
     page.lead = element(
@@ -104,7 +92,7 @@ def _write(options, program):
     for note in data.notes:
         warn(f"tandem: {note}")
     sentences = "".join(f"{one}\n" for one in data.sentences) if options.sentences else ""
-    return f"{sentences}{options.output}: {_contents(data.cells, records, len(options.files))}{scene}, {written / 1e6:.1f} MB\n"
+    return f"{sentences}{options.output}: {_contents(data.cells, records)}{f', {scene.key}' if scene else ''}, {written / 1e6:.1f} MB\n"
 
 
 def _make(options, program):

@@ -37,13 +37,8 @@ def _is_the_fastest(cells):
 
 def which_text(cells):
     """What the first of Named cells is, to be put behind its name: ", the fastest"."""
-    return (
-        ", the fastest"
-        if _is_the_fastest(cells)
-        else ", which has the lowest median"
-        if len(cells) > 1
-        else ""
-    )
+    lead = ", the fastest" if _is_the_fastest(cells) else ", which has the lowest median"
+    return lead if len(cells) > 1 else ""
 
 
 def lead_sentence(cells, of=""):
@@ -59,16 +54,14 @@ def title(cells, answers_differ):
     """The title of a chart of Named cells."""
     if answers_differ:
         return "Answers differ: these times are of different work"
-    if len(cells) < 2:
-        return (
-            f"{cells[0].name} takes {digits(cells[0].ms)} ms a frame"
-            if cells
-            else "None of these cells has valid times"
-        )
-    first, second = cells[0], cells[1].ranked
-    ratio, interval = digits(second.ratio.value), interval_text(second.ratio, second.has_interval)
-    if _is_the_fastest(cells):
-        return f"{first.name} is the fastest; the next takes {ratio} times as long {interval}"
+    if not cells:
+        return "None of these cells has valid times"
+    first, *rest = cells
+    if not rest:
+        return f"{first.name} takes {digits(first.ms)} ms a frame"
+    second = rest[0].ranked
+    than = f"{digits(second.ratio.value)} times as long {interval_text(second.ratio, second.has_interval)}"
     if second.has_interval and not second.is_told_apart:
-        return f"{first.name} and the next are not told apart: {ratio} times as long {interval}"
-    return f"{first.name} has the lowest median; the next takes {ratio} times as long {interval}"
+        return f"{first.name} and the next are not told apart: {than}"
+    lead = "is the fastest" if _is_the_fastest(cells) else "has the lowest median"
+    return f"{first.name} {lead}; the next takes {than}"

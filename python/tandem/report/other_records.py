@@ -30,20 +30,15 @@ def _name(record):
     return name if record["status"] == "ok" else f"{needed(record, 'status')}: {name}"
 
 
-def _number_at(record, name):
-    value = record.get(name)
-    return rounded(value) if is_number(value) else None
+def _numbers(part, names):
+    """{name: its number with six digits, or None}"""
+    return {name: rounded(part[name]) if is_number(part.get(name)) else None for name in names}
 
 
 def _kernel(kernel):
-    ns = kernel["device_ns"]
-    shown = {
-        **{name: needed(kernel, name) for name in ("entry", "stage")},
-        "ms": [needed(ns, name, kind="number") / 1e6 for name in ("median", "low", "high")],
-    }
-    return (
-        shown | {name: _number_at(kernel, name) for name in KERNEL_NUMBERS} | {"bound": kernel.get("bound")}
-    )
+    texts = {name: needed(kernel, name) for name in ("entry", "stage")}
+    ms = [needed(kernel, "device_ns", name, kind="number") / 1e6 for name in ("median", "low", "high")]
+    return texts | _numbers(kernel, KERNEL_NUMBERS) | {"ms": ms, "bound": kernel.get("bound")}
 
 
 def _ceiling_conditions(record):
@@ -57,13 +52,11 @@ def _ceiling_conditions(record):
     return f"measured before the kernels in the same run, {date}{cache}. Conditions of the run: {conditions_text(record)}"
 
 
-def shown_profile(record, path):
-    """A profile for the page. `path`: the file of the record."""
-    ceilings = {name: _number_at(record["ceilings"], name) for name in CEILINGS}
+def shown_profile(record):
+    """A profile for the page."""
     return {
         "name": _name(record),
-        "file": os.path.basename(path),
-        "ceilings": ceilings,
+        "ceilings": _numbers(record["ceilings"], CEILINGS),
         "conditions": _ceiling_conditions(record),
         "kernels": list(map(_kernel, record["kernels"])),
     }
@@ -107,14 +100,7 @@ class _Run:
             self.kept = self.kept[::2]
 
     def shown(self):
-        return {
-            "name": self.name,
-            "status": self.status,
-            "failure": self.failure,
-            "steps": self.steps,
-            "parts": list(HOST_PARTS),
-            "kept": self.kept,
-        }
+        return {name: value for name, value in vars(self).items() if name != "stride"} | {"parts": HOST_PARTS}
 
 
 def _step(line):

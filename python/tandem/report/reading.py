@@ -61,7 +61,7 @@ def _add(kind, record, location, records, simulations):
     elif kind == "simulation":
         simulations.add(record, path)
     elif kind == "profile":
-        records.profiles.append(shown_profile(record, path))
+        records.profiles.append(shown_profile(record))
     else:
         records.ceilings.append(shown_ceilings(record))
 

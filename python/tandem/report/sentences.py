@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Sentences on groups: the fastest cell, its lead and significance, and cells that failed or were wrong."""
 
-import dataclasses
-
 from ..text_lines import one_line
 from .leads import Named, compared_text, lead_sentence
 from .numbers import digits
@@ -77,67 +75,41 @@ def group_sentences(group, cells):
     return first + _not_ranked(group, cells)
 
 
-@dataclasses.dataclass
-class _Wins:
-    """Numbers of groups in which an algorithm is the fastest, and in which its lead is significant; the range
-    of ratios of the best other algorithm to it."""
-
-    all: int = 0
-    significant: int = 0
-    low: float = 0
-    high: float = 0
-
-    def add(self, ratio, is_told_apart):
-        self.low = ratio if self.all == 0 else min(self.low, ratio)
-        self.high = max(self.high, ratio)
-        self.all += 1
-        self.significant += is_told_apart
-
-
 def _wins(groups, cells):
-    """Pairs of an algorithm and its _Wins, the most wins first."""
-
-    def algorithm(ranked):
-        return cells[ranked.cell].algorithm
-
+    """{algorithm: (ratio of the best other algorithm to it, whether that is told apart) of each group in which
+    the algorithm is the fastest}, the most wins first."""
     wins = {}
     for group in groups:
-        if not group.ranked or group.answers_differ:
-            continue
-        winner = algorithm(group.ranked[0])
-        after = next((ranked for ranked in group.ranked if algorithm(ranked) != winner), None)
-        if after is not None:
-            wins.setdefault(winner, _Wins()).add(after.ratio.value, after.is_told_apart)
-    return sorted(sorted(wins.items()), key=lambda item: -item[1].all)
+        algorithms = [cells[one.cell].algorithm for one in group.ranked]
+        after = next((one for one, name in zip(group.ranked, algorithms) if name != algorithms[0]), None)
+        if after is not None and not group.answers_differ:
+            wins.setdefault(algorithms[0], []).append((after.ratio.value, after.is_told_apart))
+    return dict(sorted(sorted(wins.items()), key=lambda item: -len(item[1])))
 
 
 def _won(name, won, contested):
-    """A sentence on an algorithm that has the lowest median in `won.all` of `contested` comparisons."""
+    """A sentence on an algorithm that has the lowest median in so many of `contested` comparisons."""
+    name, ratios, significant = (
+        one_line(name, 100),
+        [ratio for ratio, _ in won],
+        sum(is_apart for _, is_apart in won),
+    )
     where = (
-        "the only comparison"
-        if contested == 1
-        else f"all {contested} comparisons"
-        if won.all == contested
-        else f"{won.all} of {contested} comparisons"
+        f"all {contested} comparisons" if len(won) == contested else f"{len(won)} of {contested} comparisons"
     )
-    than = digits(won.low) if won.all == 1 else f"{digits(won.low)} to {digits(won.high)}"
-    if won.significant == won.all:
+    where = "the only comparison" if contested == 1 else where
+    than = digits(ratios[0]) if len(won) == 1 else f"{digits(min(ratios))} to {digits(max(ratios))}"
+    if significant == len(won):
         return f"{name} is the fastest in {where}; the best other algorithm takes {than} times as long."
-    apart = (
-        f"told apart from it in {won.significant} of these" if won.significant else "not told apart from it"
-    )
+    apart = f"told apart from it in {significant} of these" if significant else "not told apart from it"
     return f"{name} has the lowest median in {where}; the best other algorithm takes {than} times as long, and is {apart}."
-
-
-def _wins_sentences(wins):
-    contested = sum(won.all for _, won in wins)
-    return [" ".join(_won(one_line(name, 100), won, contested) for name, won in wins)]
 
 
 def summary_sentences(groups, cells):
     """Sentences on all groups together: the numbers of wins of each algorithm, and cells that are not ranked."""
     wins = _wins(groups, cells)
-    sentences = _wins_sentences(wins) if wins else []
+    contested = sum(map(len, wins.values()))
+    sentences = [" ".join(_won(name, won, contested) for name, won in wins.items())] if wins else []
     failed, wrong = (sum(cell.status == status for cell in cells) for status in ("failed", "wrong"))
     if failed + wrong > 0:
         sentences.append(
