@@ -96,11 +96,6 @@ class ReportCase(Case):
         self.opened(page)
         return Shown(page.read_text())
 
-    def draw(self, figure):
-        """Scrolls to a chart, which draws it."""
-        self.browser.run(f"document.getElementById('{figure}').scrollIntoView()")
-        self.browser.until(f"document.getElementById('{figure}').dataset.drawn === 'true'")
-
     def choose(self, part, label, value, event="change"):
         """Gives a field of a part of the page, found by its label, a value."""
         self.browser.run(CHOOSE.format(part, *map(json.dumps, (label, value, event))))

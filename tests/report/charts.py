@@ -70,7 +70,6 @@ def contrast(a, b):
 class Charts(ReportCase):
     def chart(self, figure, script):
         """The value of an expression of `chart`, the drawn chart of a figure."""
-        self.draw(figure)
         return self.browser.run(
             f"(() => {{ const chart = Chart.getChart(document.querySelector('#{figure} canvas')); return {script}; }})()"
         )

@@ -23,18 +23,13 @@ class History(ReportCase):
     def record(self, commit, factor, session="", key=""):
         """A record with `factor` times the time of the committed one, with noise of 0.2 %."""
         record = copy.deepcopy(next(one for one in self.plan if one["key"].startswith("tiled")))
-        record["key"] += key
+        date = f"2026-05-{10 + NAMES.index(commit)}T00:00:00Z"
+        record["environment"] |= {"commit": commit, "dirty": False, "date": date}
         record["settings"]["pad"] = key or "0"
-        record |= {"session": session or f"{commit[:3]}{factor}{key}"}
-        record["environment"] |= {
-            "commit": commit,
-            "dirty": False,
-            "date": f"2026-05-{10 + NAMES.index(commit)}T00:00:00Z",
-        }
-        record["conditions"] = None
-        record["total_ns"]["samples"] = [round(1e6 * factor * self.random.gauss(1, 0.002)) for _ in range(12)]
-        record["total_ns"]["rounds"] = list(range(12))
-        return record
+        samples = [round(1e6 * factor * self.random.gauss(1, 0.002)) for _ in range(12)]
+        record["total_ns"] |= {"samples": samples, "rounds": list(range(12))}
+        session = session or f"{commit[:3]}{factor}{key}"
+        return record | {"key": record["key"] + key, "session": session, "conditions": None}
 
     def history(self, *records):
         return history_of(read_records([str(self.write("history.jsonl", records))]).cells)
@@ -50,38 +45,29 @@ class History(ReportCase):
     def series(self, *factors, key="k"):
         return [self.record(commit, factor, key=key) for commit, factor in zip(NAMES, factors)]
 
-    def test_a_step_is_found_where_it_is(self):
-        self.assertEqual(self.moves(*self.series(1, 1, 1.1, 1.1)), {"k": "c"})
-        self.assertEqual(self.moves(*self.series(1, 0.9, 0.9, 1)), {"k": "bd"})
-        self.assertEqual(self.moves(*self.series(1, 1, 1, 1)), {"k": ""})
-        self.assertEqual(
-            self.moves(*self.series(1, 1, 1.1, 1, key="i"), *self.series(1, 1, 1, 1, key="j")),
-            {"i": "cd", "j": ""},
-        )
+    def test_moves_are_found_where_they_are(self):
+        for factors, moved in (
+            ((1, 1, 1.1, 1.1), "c"),
+            ((1, 0.9, 0.9, 1), "bd"),
+            ((1, 1, 1, 1), ""),
+            ((1, 1.007, 1.014, 1.021), "c"),  # 1 % is the threshold; no step reaches it, but drift adds up
+        ):
+            self.assertEqual(self.moves(*self.series(*factors)), {"k": moved})
+            self.assertEqual(self.moves(*reversed(self.series(*factors))), {"k": moved}, "order is by date")
+        two = *self.series(1, 1, 1.1, 1, key="i"), *self.series(1, 1, 1, 1, key="j")
+        self.assertEqual(self.moves(*two), {"i": "cd", "j": ""})
 
     def test_titles_name_the_last_moves(self):
-        cells = lambda *factors: read_records([str(self.write("titles.jsonl", self.series(*factors)))]).cells
-        titles = [
-            shown_history(cells(*factors))[0]["cells"][0]["title"]
-            for factors in ((1, 2, 3, 4), (1, 2, 2, 2), (1, 2, 3, 4, 5))
-        ]
-        self.assertRegex(
-            titles[0], "^tiled takes .* since bbbbbbb, then .* since ccccccc, then .* since ddddddd$"
-        )
-        self.assertRegex(titles[1], "^tiled takes .* since bbbbbbb$")
-        self.assertRegex(
-            titles[2],
-            "^tiled moved 4 times; it takes .* since ccccccc, then .* since ddddddd, then .* since eeeeeee$",
-        )
-
-    def test_drift_adds_up(self):
-        self.assertEqual(
-            self.moves(*self.series(1, 1.007, 1.014, 1.021)), {"k": "c"}
-        )  # 1 % is the threshold; no step reaches it
-
-    def test_order_is_by_date(self):
-        records = self.series(1, 1, 1.1, 1.1)
-        self.assertEqual(self.moves(*reversed(records)), {"k": "c"})
+        for factors, title in (
+            ((1, 2, 2, 2), "takes .* since b{7}"),
+            ((1, 2, 3, 4), "takes .* since b{7}, then .* since c{7}, then .* since d{7}"),
+            (
+                (1, 2, 3, 4, 5),
+                "moved 4 times; it takes .* since c{7}, then .* since d{7}, then .* since e{7}",
+            ),
+        ):
+            cells = read_records([str(self.write("titles.jsonl", self.series(*factors)))]).cells
+            self.assertRegex(shown_history(cells)[0]["cells"][0]["title"], f"^tiled {title}$")
 
     def test_the_rule_is_that_of_compare(self):
         for factors in ((1, 1), (1, 1.02), (1, 1.2), (1.2, 1)):
@@ -97,22 +83,13 @@ class History(ReportCase):
 
     def test_sessions_are_the_unit(self):
         """Sessions that differ by more than their rounds do: rounds alone would show a change."""
-        places = (1, 1.06, 0.95, 1.03)
 
-        def sessions(commit, factors):
-            return [
-                self.record(commit, factor, session=f"{commit[0]}{i}", key="k")
-                for i, factor in enumerate(factors)
-            ]
+        def sessions(commit, factor):
+            own = (factor * place for place in (1, 1.06, 0.95, 1.03))
+            return [self.record(commit, one, f"{commit[0]}{i}", "k") for i, one in enumerate(own)]
 
-        self.assertEqual(
-            self.moves(*sessions(NAMES[0], places), *sessions(NAMES[1], [1.02 * place for place in places])),
-            {"k": ""},
-        )
-        moved = self.history(
-            *sessions(NAMES[0], places), *sessions(NAMES[1], [1.5 * place for place in places])
-        )
-        point = next(iter(moved.points.values()))[1]
+        self.assertEqual(self.moves(*sessions(NAMES[0], 1), *sessions(NAMES[1], 1.02)), {"k": ""})
+        [[_, point]] = self.history(*sessions(NAMES[0], 1), *sessions(NAMES[1], 1.5)).points.values()
         self.assertEqual((point.moved, point.cell.sessions), (True, 4))
 
     def test_one_commit_has_no_history(self):
@@ -129,7 +106,6 @@ class History(ReportCase):
             self.text("#summary"),
             r"Over 4 commits, 1 of 2 cells moved\. pad=j takes 1\.2\d+ times as long \[1\.2\d*, 1\.2\d*\] since ccccccc\.",
         )
-        self.draw("history")
         self.assertRegex(self.text("#history h3"), "^pad=j takes 1.2")
         chart = "Chart.getChart(document.querySelector('#history canvas'))"
         self.assertEqual(self.browser.run(f"{chart}.data.labels"), [name[:7] for name in NAMES[:4]])
@@ -137,7 +113,5 @@ class History(ReportCase):
         self.assertEqual([one is not None for one in moved], [False, False, True, False])
         for time, factor in zip(times, (1, 1, 1.25, 1.25)):
             self.assertAlmostEqual(time * 10, factor, delta=0.02)  # frames 140 to 149
-        self.browser.run(
-            "const choice = document.querySelector('#history select'); choice.selectedIndex = 1; choice.dispatchEvent(new Event('change'))"
-        )
+        self.choose("history", "cell", "1")
         self.assertEqual(self.text("#history h3"), "pad=i did not move over 4 commits")

@@ -62,8 +62,6 @@ class Pages(ReportCase):
         self.assertEqual(len(of_column(shown.rows, "cell")), count)
         figures = self.browser.run("[...document.querySelectorAll('figure')].map(figure => figure.id)")
         self.assertEqual(set(figures), FIGURES)
-        for figure in figures:
-            self.draw(figure)
         self.assertEqual(self.browser.run(EMPTY), [])
         before = self.text("#medians h3")
         self.choose("medians", "comparison", "1")

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A chart of the page: a title with its result, a choice of its data, a canvas that is drawn when it comes into view, and a
-// table of the same numbers.
+// A chart of the page: a title with its result, a choice of its data, a canvas, and a table of the same numbers.
 "use strict";
 
 /** Colours that are distinct for readers with colour blindness (Okabe and Ito 2008), on light and dark backgrounds. */
@@ -85,7 +84,7 @@ tandem.shortened = (text, length) => text.length > length ? text.slice(0, length
 tandem.Figure = class {
   /** `choices`: list of {value, text}. `describe` returns {title, alt, type, data, options, table} for a value, and optionally height and notes: [{text, bad}]. */
   constructor({id, label, choices, describe}) {
-    Object.assign(this, {id, label, choices, describe, value: choices[0].value, chart: null, drawn: false});
+    Object.assign(this, {id, label, choices, describe, value: choices[0].value});
   }
 
   show() {
@@ -101,13 +100,7 @@ tandem.Figure = class {
       element("details", {}, element("summary", {}, "The numbers of this chart"), this.table));
     tandem.show("charts", this.figure);
     this.refresh();
-    new IntersectionObserver((entries, observer) => {
-      if (!entries.some(entry => entry.isIntersecting)) return;
-      observer.disconnect();
-      this.draw();
-    }, {rootMargin: "200px"}).observe(this.figure);
-    addEventListener("beforeprint", () => this.draw());
-    tandem.darkness.addEventListener("change", () => this.drawn && this.draw());
+    tandem.darkness.addEventListener("change", () => this.draw());
   }
 
   refresh() {
@@ -116,15 +109,13 @@ tandem.Figure = class {
     this.canvas.setAttribute("aria-label", `${what.title} ${what.alt} The numbers are in the table below.`);
     this.notes.replaceChildren(...(what.notes ?? []).map(({text, bad}) => tandem.element("p", {class: bad ? "bad" : "quiet"}, text)));
     this.table.replaceChildren(tandem.table(...what.table));
-    if (what.height) this.plot.style.height = what.height + "px";
-    else this.plot.style.height = "";
-    if (this.drawn) this.draw();
+    this.plot.style.height = what.height ? what.height + "px" : "";
+    this.draw();
   }
 
   /** Draws the chart with the current colours of the page. */
   draw() {
-    this.drawn = true;
-    if (this.chart) this.chart.destroy();
+    this.chart?.destroy();
     const {type, data, options} = this.describe(this.value);
     Chart.defaults.color = tandem.ofStyle("--text");
     Chart.defaults.borderColor = tandem.ofStyle("--grid");
@@ -137,6 +128,5 @@ tandem.Figure = class {
     this.chart = new Chart(this.canvas, {type, data, plugins: [tandem.whiskers, tandem.pointNames],
       options: {animation: false, maintainAspectRatio: false, ...options,
         plugins: {legend: {display: data.datasets.length > 1, position: "bottom", labels: {usePointStyle: true}}, tooltip: {callbacks: tandem.pointText}}}});
-    this.figure.dataset.drawn = "true";
   }
 };
