@@ -10,29 +10,26 @@ import numpy
 from tests.program import SOURCE
 from tests.report.case import RECORDS, ReportCase
 
-# Colour blindness as matrices on linear RGB, of severity 1: Machado, Oliveira and Fernandes, A
+
+# SIGHTS: colour blindness as matrices on linear RGB, of severity 1: Machado, Oliveira and Fernandes, A
 # Physiologically-based Model for Simulation of Color Vision Deficiency, IEEE TVCG 15(6), 2009.
+def matrix(text):
+    return numpy.array(text.split(), float).reshape(3, 3)
+
+
 SIGHTS = {
     "all colours": numpy.eye(3),
-    "protanopia": [
-        [0.152286, 1.052583, -0.204868],
-        [0.114503, 0.786281, 0.099216],
-        [-0.003882, -0.048116, 1.051998],
-    ],
-    "deuteranopia": [
-        [0.367322, 0.860646, -0.227968],
-        [0.280085, 0.672501, 0.047413],
-        [-0.011820, 0.042940, 0.968881],
-    ],
-    "tritanopia": [
-        [1.255528, -0.076749, -0.178779],
-        [-0.078411, 0.930809, 0.147602],
-        [0.004733, 0.691367, 0.303900],
-    ],
+    "protanopia": matrix(
+        "0.152286 1.052583 -0.204868 0.114503 0.786281 0.099216 -0.003882 -0.048116 1.051998"
+    ),
+    "deuteranopia": matrix(
+        "0.367322 0.860646 -0.227968 0.280085 0.672501 0.047413 -0.011820 0.042940 0.968881"
+    ),
+    "tritanopia": matrix(
+        "1.255528 -0.076749 -0.178779 -0.078411 0.930809 0.147602 0.004733 0.691367 0.303900"
+    ),
 }
-XYZ = numpy.array(
-    [[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.0721750], [0.0193339, 0.1191920, 0.9503041]]
-)
+XYZ = matrix("0.4124564 0.3575761 0.1804375 0.2126729 0.7151522 0.0721750 0.0193339 0.1191920 0.9503041")
 LEAST_DISTANCE = 20  # of CIE 1976 L*a*b*; 2.3 is just noticeable
 LEAST_CONTRAST = 3  # WCAG 2.1, 1.4.11
 

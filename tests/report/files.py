@@ -64,18 +64,12 @@ class Reading(Case):
         return " ".join(f"({cell.session})" if cell.is_older else cell.session for cell in read.cells)
 
     def test_which_records_are_shown(self):
-        """Copies and interrupted records that go on in another are left out; the last that is ok counts."""
-        begun, whole, good, again = (
-            self.made("b", 3),
-            self.made("w", 9),
-            self.made("g"),
-            self.made("a", factor=2),
-        )
+        """Interrupted records that go on in another are left out, as for tandem.read(); the last that is ok counts."""
+        begun, whole = self.made("b", 3), self.made("w", 9)
+        good, again = self.made("g"), self.made("a", factor=2)
         failed = self.made("f", status="failed", failure="lost")
         for records, shown in (
             ((begun, whole), "w"),
-            ((whole, begun), "w"),
-            ((whole, whole), "w"),
             ((self.made("b", 3, 2), whole), "(b) w"),
             ((good, again), "(g) a"),
             ((good, failed), "g (f)"),
@@ -91,11 +85,10 @@ class Reading(Case):
 
     def test_of_too_many_records_one_per_key_is_kept(self):
         keys = [self.made(f"{i}", 5, 1 + i / 100, key=f"key {i % 4}") for i in range(8)]
-        older, left_out = (
-            "4 older records of cells that were recorded again are left out",
-            (
-                "2 of 9 records of cells are left out, 1 of them failed or wrong: a page shows at most 3; give fewer files or fewer lines"
-            ),
+        older = "4 older records of cells that were recorded again are left out"
+        left_out = (
+            "2 of 9 records of cells are left out, 1 of them failed or wrong: a page shows at most 3; "
+            "give fewer files or fewer lines"
         )
         wrong = self.made("w", status="wrong", key="another")
         for records, most, shown, notes in (
