@@ -96,12 +96,8 @@ def _write(options, program):
 
 
 def _make(options, program):
-    from ..report.scene import ExportEnded
-
     try:
         return _write(options, program), 0
-    except ExportEnded as ended:
-        return "", ended.code
     except ModuleNotFoundError as missing:  # of trends, of --against, and where no verdict is recorded
         check_packages("tandem report", (missing.name.partition(".")[0],))
         raise

@@ -5,7 +5,7 @@ import re
 
 from ..files import check_output
 from ..report.assembly import SCENE, open_page, write_page
-from ..report.scene import ExportEnded, add_options, shown_scene, words_of
+from ..report.scene import add_options, shown_scene, words_of
 from . import Parser, check_together, run
 
 
@@ -35,10 +35,7 @@ def _make(options, program):
     if options.output:
         check_output(options.output, [*filter(None, (options.scene,)), *(options.mesh or ())], ".partial")
     page = open_page("", False, True, program, "tandem view")
-    try:
-        scene = shown_scene(program, words_of(options.scene, options), options.output)
-    except ExportEnded as ended:
-        return "", ended.code
+    scene = shown_scene(program, words_of(options.scene, options), options.output)
     page.title, page.data["scene"] = f"{scene.name}, a scene of tandem", scene.json
     page.sections = [SCENE]
     path = options.output or _file_name(scene.name)

@@ -36,12 +36,8 @@ def add_options(parser):
     add("--device", metavar="DEVICE", help="the device that finds contacts (default: host)")
 
 
-class ExportEnded(Exception):
-    """The export ended with an exit code other than 0, and has printed the reason."""
-
-    def __init__(self, code):
-        super().__init__(code)
-        self.code = code
+class ExportEnded(SystemExit):
+    """Ends this process, too: the export ended with this exit code, and has printed the reason."""
 
 
 @dataclasses.dataclass
