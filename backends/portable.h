@@ -169,7 +169,11 @@ typedef unsigned long ulong; // 64 bits on Linux
     name##_storage.resize(count);                                                                            \
     type* const name = name##_storage.data()
 #endif
+#ifdef IN_PACKS // a call would pass values of packs through memory
+#define DEVICE [[gnu::always_inline]] static inline
+#else
 #define DEVICE static inline
+#endif
 #define BARRIER ((void)0)
 #define BARRIER_GLOBAL ((void)0)
 #define LOCAL_ID 0u
@@ -180,8 +184,8 @@ typedef unsigned long ulong; // 64 bits on Linux
 #define LOCAL_ATOMIC_ADD(pointer, value) tandem::host::fetch_add_locally((pointer), (value))
 #define COUNT_LEADING_ZEROS(value) ((uint)__builtin_clz((uint)(value)))
 #define COUNT_ONES(value) ((uint)__builtin_popcount((uint)(value)))
-#define SQUARE_ROOT(value) std::sqrt(value)
-#define ABSOLUTE(value) std::fabs(value)
+#define SQUARE_ROOT(value) tandem::host::square_root(value)
+#define ABSOLUTE(value) tandem::host::absolute(value)
 #define MINIMUM(a, b) ((a) < (b) ? (a) : (b))
 #define MAXIMUM(a, b) ((a) > (b) ? (a) : (b))
 #define ADD_DOWN(a, b) tandem::host::add_down((a), (b))
@@ -223,9 +227,11 @@ typedef uint RealBits;
 #define BITS_OF(value) __float_as_uint(value)
 #define REAL_OF(bits) __uint_as_float(bits)
 #else
-#define BITS_OF(value) std::bit_cast<RealBits>(value)
-#define REAL_OF(bits) std::bit_cast<real>(bits)
+#define BITS_OF(value) tandem::host::bits_of(value)
+#define REAL_OF(bits) tandem::host::real_of(bits)
 #endif
+
+#include "backends/packs.h"
 
 #define GLOBAL_ID (GROUP_ID * (uint)(GROUP_SIZE) + LOCAL_ID)
 #define GLOBAL_COUNT (GROUP_COUNT * (uint)(GROUP_SIZE))

@@ -23,7 +23,7 @@ INCLUDE = re.compile(r'^#include "([^"]+)"')
 DEFAULT = re.compile(r"^#ifndef (\w+)\n#define \1 (\d+)$", re.M)
 VARIANTS = re.compile(r"^// Host variants: (.*?)(, in lanes)?(?:; of higher levels: (.*))?$", re.M)
 OF_GEOMETRY = {"AXES", "K", "PRECISION"}
-LANES = re.compile(r"^(?!#define|//).*\bFOR_LANES\b", re.M)
+LANES = re.compile(r"^(?!#define|//).*\bFOR_LANES\b|^#define IN_PACKS$", re.M)
 
 
 def flatten(root, name, included):
@@ -117,7 +117,8 @@ class Kernel:
     def is_on_higher(self, defines, higher_k):
         """Whether levels above the lowest have this variant, of those values of k in `higher_k` or of all."""
         has = set(defines)
-        return self.on_higher <= has and (not higher_k or has & {f"K={k}" for k in higher_k})
+        is_of_k = not higher_k or "K" not in self.geometry or has & {f"K={k}" for k in higher_k}
+        return self.on_higher <= has and is_of_k
 
 
 def variant_code(kernel, defines, scope, identifier, level):

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The first of three kernels from candidate pairs to contacts: leaves out pairs without the boundary faces
 // that the rule needs, and decides the others by certificates, at little cost.
-// Host variants: PRECISION
+// Host variants: PRECISION, in lanes
+#define IN_PACKS
 #include "backends/portable.h"
 
 #include "algorithms/narrow_phase/pair_state.clh"
@@ -9,7 +10,7 @@
 
 // Pairs per work-item between two writes of its group's results, each of which needs barriers. Where many
 // pairs lack boundary faces, enough others remain for all work-items.
-#define PAIRS_AT_A_TIME 8
+#define PAIRS_AT_A_TIME (8 * PACK)
 #define FOUND_CAPACITY (PAIRS_AT_A_TIME * GROUP_SIZE)
 #define GROUP_ASKED GROUP_OWN // number of pairs in `asked`
 
@@ -30,6 +31,26 @@ DEVICE void hand_out(LOCAL const uint* found, LOCAL uint* group, GLOBAL uint* op
     BARRIER;
 }
 
+// Lists pairs base..base + count - 1 that have the boundary faces that the rule needs, and counts the others.
+DEVICE void ask(const Candidates* all, uint base, uint count, LOCAL uint* asked, LOCAL uint* group) {
+#if PACK > 1
+    uint entry = group[GROUP_ASKED];
+    const uint before = entry;
+    for (uint i = 0; i < count; ++i) { // without a branch, because none would be foreseen
+        asked[entry] = base + i;
+        entry += 1u - lacks_boundary(all, base + i);
+    }
+    group[GROUP_ASKED] = entry;
+    group[GROUP_WITHOUT] += count - (entry - before);
+#else
+    if (count == 0u) return;
+    if (lacks_boundary(all, base) != 0u)
+        LOCAL_ATOMIC_ADD(group + GROUP_WITHOUT, 1u);
+    else
+        asked[LOCAL_ATOMIC_ADD(group + GROUP_ASKED, 1u)] = base;
+#endif
+}
+
 // Processes pairs first..`pair_capacity` - 1, at most OPEN_PAIRS of them, up to the count in the status.
 // `verdicts` are as in KNOWN_APART; with DECIDED, pairs not known to be apart count as meeting.
 KERNEL void certify_pairs(GLOBAL const uint* found, uint first, uint pair_capacity, GLOBAL const uint* owners,
@@ -42,29 +63,32 @@ KERNEL void certify_pairs(GLOBAL const uint* found, uint first, uint pair_capaci
     LOCAL_ARRAY(uint, waiting, LISTS * FOUND_CAPACITY);
     const Candidates all = {found, owners, poses, tetrahedra, vertices, boundary};
     const ulong count = stored(status + STATUS_PAIRS, pair_capacity);
-    ulong start = (ulong)first + GROUP_ID * (uint)GROUP_SIZE;
+    ulong start = (ulong)first + (GROUP_ID * (uint)GROUP_SIZE) * PACK;
     begin_group(group);
     do {
-        NO_UNROLL for (int i = 0; i < PAIRS_AT_A_TIME; ++i, start += GLOBAL_COUNT) {
-            const uint index = (uint)(start + LOCAL_ID);
-            if (start + LOCAL_ID >= count) continue;
-            if (lacks_boundary(&all, index))
-                count_state(PAIR_WITHOUT_BOUNDARY, group);
-            else
-                asked[LOCAL_ATOMIC_ADD(group + GROUP_ASKED, 1u)] = index;
+        NO_UNROLL for (int i = 0; i < PAIRS_AT_A_TIME / PACK; ++i, start += GLOBAL_COUNT * PACK) {
+            const ulong base = start + LOCAL_ID * PACK;
+            ask(&all, (uint)base, elements_below(base, count), asked, group);
         }
         BARRIER;
-        NO_UNROLL for (uint i = LOCAL_ID; i < group[GROUP_ASKED]; i += GROUP_SIZE) {
-            const uint index = asked[i];
-            int edge = -1;
-            const int apart = KNOWN_APART(verdicts, index);
-            const int state = apart ? PAIR_REJECTED : try_certificate(&all, index, &edge);
+        NO_UNROLL for (uint i = LOCAL_ID * PACK; i < group[GROUP_ASKED]; i += GROUP_SIZE * PACK) {
+            const uint present = elements_below(i, group[GROUP_ASKED]);
+            uints index = SAME_WORD(0);
+            FOR_PACK(element) AT(index, element) = asked[i + (element < present ? element : 0u)];
+            uints edge = SAME_WORD(0);
+            const flags apart = known_apart(verdicts, index);
+            uints state = SAME_WORD(PAIR_REJECTED);
+            if (!ALL(apart)) state = apart ? state : try_certificate(&all, index, &edge);
+            state = first_elements(present) ? state : SAME_WORD(PAIR_ABSENT);
             count_state(state, group);
-            if (state == PAIR_OPEN)
-                waiting[LIST_OPEN * FOUND_CAPACITY + LOCAL_ATOMIC_ADD(group + LIST_OPEN, 1u)] =
-                    OPEN_PAIR(index - first, edge);
-            if (state == PAIR_MEETING)
-                waiting[LIST_MEETING * FOUND_CAPACITY + LOCAL_ATOMIC_ADD(group + LIST_MEETING, 1u)] = index;
+            FOR_PACK(element) {
+                const uint one = (uint)AT(index, element);
+                APPEND_IF(AT(state, element) == PAIR_OPEN, group + LIST_OPEN,
+                          waiting[LIST_OPEN * FOUND_CAPACITY + entry] =
+                              OPEN_PAIR(one - first, (uint)AT(edge, element)));
+                APPEND_IF(AT(state, element) == PAIR_MEETING, group + LIST_MEETING,
+                          waiting[LIST_MEETING * FOUND_CAPACITY + entry] = one);
+            }
         }
         hand_out(waiting, group, open, meeting, status);
     } while (start < count);

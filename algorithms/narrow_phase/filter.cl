@@ -2,7 +2,8 @@
 // The certified filter in the cell's precision: a verdict for every pair that has the boundary faces that the
 // contact rule needs, and a list of those it cannot decide. Each pair first gets a certificate, from this
 // kernel or, with OVER_OPEN, from certify_pairs before it.
-// Host variants: PRECISION
+// Host variants: PRECISION, in lanes
+#define IN_PACKS
 #include "backends/portable.h"
 
 #define CERTAIN_IN_DOUBLE 0
@@ -15,15 +16,17 @@
 #define OVER_OPEN 0
 #endif
 
-DEVICE int filtered(const Candidates* all, uint index) {
-    Point a[4];
-    Point b[4];
-    load_pair(all, index, a, b);
-    if (!OVER_OPEN) {
-        const int certain = certificate_of(a, b);
-        if (certain != CERTAIN_NOTHING) return certain == CERTAIN_APART ? VERDICT_APART : VERDICT_MEETS;
-    }
-    return certain_verdict(a, b);
+DEVICE uints filtered(const Candidates* all, uints index) {
+    Points a[4];
+    Points b[4];
+    load_pair(all, index, a, b, 0);
+    if (OVER_OPEN) return certain_verdict(a, b, ALWAYS);
+    const uints certain = certificate_of(a, b);
+    const flags open = certain == (uint)CERTAIN_NOTHING;
+    const uints verdict =
+        certain == (uint)CERTAIN_APART ? SAME_WORD(VERDICT_APART) : SAME_WORD(VERDICT_MEETS);
+    if (!ANY(open)) return verdict;
+    return open ? certain_verdict(a, b, open) : verdict;
 }
 
 // `undecided_by_filter` has capacity for every pair.
@@ -34,12 +37,21 @@ KERNEL void filter_pairs(GLOBAL const uint* found, uint first, uint pair_capacit
     const Candidates all = {found, owners, poses, tetrahedra, vertices, boundary};
     const ulong count =
         OVER_OPEN ? status[STATUS_WAITING + LIST_OPEN] : stored(status + STATUS_PAIRS, pair_capacity);
-    for (ulong i = (OVER_OPEN ? 0u : (ulong)first) + GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
-        const uint index = OVER_OPEN ? first + PAIR_OF_OPEN(open[i]) : (uint)i;
-        if (OVER_OPEN == 0 && lacks_boundary(&all, index)) continue;
-        const int verdict = filtered(&all, index);
-        verdicts[index] = (uchar)verdict;
-        if (verdict == VERDICT_OPEN)
-            undecided_by_filter[counter_add(status + STATUS_UNDECIDED_BY_FILTER, 1u)] = index;
+    const ulong step = (ulong)GLOBAL_COUNT * PACK;
+    for (ulong i = (OVER_OPEN ? 0u : (ulong)first) + (ulong)GLOBAL_ID * PACK; i < count; i += step) {
+        const uint present = elements_below(i, count);
+        const uints index =
+            OVER_OPEN ? first + PAIR_OF_OPEN(entries_of(open, i, present)) : numbers_from((uint)i, present);
+        uints skipped = SAME_WORD(0);
+        if (OVER_OPEN == 0) FOR_PACK(k) AT(skipped, k) = lacks_boundary(&all, (uint)AT(index, k));
+        if (ALL(skipped != 0u)) continue;
+        const uints verdict = filtered(&all, index);
+        FOR_PACK(k) {
+            if (k >= present || AT(skipped, k) != 0u) continue;
+            verdicts[AT(index, k)] = (uchar)AT(verdict, k);
+            if (AT(verdict, k) == VERDICT_OPEN)
+                undecided_by_filter[counter_add(status + STATUS_UNDECIDED_BY_FILTER, 1u)] =
+                    (uint)AT(index, k);
+        }
     }
 }

@@ -28,8 +28,8 @@ KERNEL void recheck_pairs(GLOBAL const uint* found, uint first, uint pair_capaci
         if (RECHECK_ALL != 0 && lacks_boundary(&all, index)) continue;
         Point a[4];
         Point b[4];
-        load_pair(&all, index, a, b);
-        const int verdict = certain_verdict(a, b);
+        load_pair(&all, index, a, b, 0);
+        const uint verdict = certain_verdict(a, b, ALWAYS);
         verdicts[index] = (uchar)verdict;
         if (verdict == VERDICT_OPEN)
             undecided_by_double[counter_add(status + STATUS_UNDECIDED_BY_DOUBLE, 1u)] = index;
@@ -44,7 +44,7 @@ KERNEL void gather_corners(GLOBAL const uint* found, GLOBAL const uint* owners, 
     const Candidates all = {found, owners, poses, tetrahedra, vertices, 0};
     for (uint i = GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
         Point corner[8];
-        load_pair(&all, undecided_by_double[(ulong)first + i], corner, corner + 4);
+        load_pair(&all, undecided_by_double[(ulong)first + i], corner, corner + 4, 0);
         for (int j = 0; j < 8; ++j) {
             GLOBAL real* to = corners + (ulong)i * CORNER_REALS + 3 * j;
             to[0] = corner[j].x;

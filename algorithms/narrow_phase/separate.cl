@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The second of three kernels from candidate pairs to contacts: tests the pairs that certificates leave open.
-// Host variants: PRECISION
+// Host variants: PRECISION, in lanes
+#define IN_PACKS
 #include "backends/portable.h"
 
 #include "algorithms/narrow_phase/pair_state.clh"
@@ -16,21 +17,29 @@ KERNEL void separate_pairs(GLOBAL const uint* found, uint first, GLOBAL const ui
     LOCAL_ARRAY(LocalPair, pairs, GROUP_SIZE);
     const Candidates all = {found, owners, poses, tetrahedra, vertices, 0};
     const uint count = status[STATUS_WAITING + LIST_OPEN];
-    uint start = GROUP_ID * (uint)GROUP_SIZE;
+    uint start = (GROUP_ID * (uint)GROUP_SIZE) * PACK;
     begin_group(group);
     do {
-        int state = PAIR_ABSENT;
-        uint index = 0;
-        if (start + LOCAL_ID < count) {
-            const uint word = open[start + LOCAL_ID];
+        uints state = SAME_WORD(PAIR_ABSENT);
+        uints index = SAME_WORD(0);
+        const uint base = start + LOCAL_ID * PACK;
+        const uint present = elements_below(base, count);
+        if (present != 0u) {
+            const uints word = entries_of(open, base, present);
             index = first + PAIR_OF_OPEN(word);
-            const int apart = KNOWN_APART(verdicts, index);
-            state = apart ? PAIR_REJECTED : try_all(&all, index, EDGE_OF_OPEN(word), pairs + LOCAL_ID);
+            const flags apart = known_apart(verdicts, index);
+            state = SAME_WORD(PAIR_REJECTED);
+            if (!ALL(apart))
+                state =
+                    apart ? state : try_all(&all, index, NOT(apart), EDGE_OF_OPEN(word), pairs + LOCAL_ID);
+            state = first_elements(present) ? state : SAME_WORD(PAIR_ABSENT);
         }
         count_state(state, group);
-        const uint slot = local_index(state == PAIR_MEETING ? LIST_MEETING : NO_LIST, group, status);
-        if (state == PAIR_MEETING) meeting[slot] = index;
-        start += GLOBAL_COUNT;
+        uint slot = local_index(LIST_MEETING, COUNT_FLAGS(state == (uint)PAIR_MEETING), group, status);
+        FOR_PACK(element) {
+            if (AT(state, element) == PAIR_MEETING) meeting[slot++] = (uint)AT(index, element);
+        }
+        start += GLOBAL_COUNT * PACK;
     } while (start < count);
     end_group(group, status);
 }

@@ -4,13 +4,18 @@
 
 #include "backends/device.h"
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
+#ifdef __SSE2__
+#include <immintrin.h>
+#endif
 
 using uchar = unsigned char;
 using uint = unsigned int;
@@ -57,6 +62,123 @@ template<class Real>
 [[gnu::always_inline]] inline Real add_up(Real a, Real b) {
     const Real sum = a + b;
     return rounded_off(a, b, sum) > 0 ? std::nextafter(sum, std::numeric_limits<Real>::infinity()) : sum;
+}
+
+// Operations on a number, or on each element of a pack of them (a vector of the compiler).
+
+template<class Real>
+using BitsOf = std::conditional_t<sizeof(Real) == 4, uint, ulong>;
+
+[[gnu::always_inline]] inline uint bits_of(float value) { return std::bit_cast<uint>(value); }
+[[gnu::always_inline]] inline ulong bits_of(double value) { return std::bit_cast<ulong>(value); }
+[[gnu::always_inline]] inline float real_of(uint bits) { return std::bit_cast<float>(bits); }
+[[gnu::always_inline]] inline double real_of(ulong bits) { return std::bit_cast<double>(bits); }
+[[gnu::always_inline]] inline float absolute(float value) { return __builtin_fabsf(value); }
+[[gnu::always_inline]] inline double absolute(double value) { return __builtin_fabs(value); }
+[[gnu::always_inline]] inline float square_root(float value) { return __builtin_sqrtf(value); }
+[[gnu::always_inline]] inline double square_root(double value) { return __builtin_sqrt(value); }
+
+template<class Pack>
+using ElementOf = std::remove_cvref_t<decltype(std::declval<Pack&>()[0])>;
+
+template<class Pack, class Element = ElementOf<Pack>>
+[[gnu::always_inline]] inline auto bits_of(Pack pack) {
+    typedef BitsOf<Element> Bits __attribute__((vector_size(sizeof(Pack))));
+    return (Bits)pack;
+}
+
+template<class Pack, class Element = ElementOf<Pack>>
+[[gnu::always_inline]] inline auto real_of(Pack bits) {
+    typedef std::conditional_t<sizeof(Element) == 4, float, double> Reals
+        __attribute__((vector_size(sizeof(Pack))));
+    return (Reals)bits;
+}
+
+template<class Pack, class Element = ElementOf<Pack>>
+[[gnu::always_inline]] inline Pack absolute(Pack pack) {
+    return real_of(bits_of(pack) & (~BitsOf<Element>{0} >> 1));
+}
+
+// The compiler has no vector code of its own for these two.
+
+template<class Pack, class Element = ElementOf<Pack>>
+[[gnu::always_inline]] inline Pack square_root(Pack pack) {
+#ifdef __SSE2__
+    if constexpr (sizeof(Pack) == 16 && sizeof(Element) == 4) return (Pack)_mm_sqrt_ps((__m128)pack);
+    if constexpr (sizeof(Pack) == 16 && sizeof(Element) == 8) return (Pack)_mm_sqrt_pd((__m128d)pack);
+#endif
+#ifdef __AVX__
+    if constexpr (sizeof(Pack) == 32 && sizeof(Element) == 4) return (Pack)_mm256_sqrt_ps((__m256)pack);
+    if constexpr (sizeof(Pack) == 32 && sizeof(Element) == 8) return (Pack)_mm256_sqrt_pd((__m256d)pack);
+#endif
+#ifdef __AVX512F__
+    if constexpr (sizeof(Pack) == 64 && sizeof(Element) == 4) return (Pack)_mm512_sqrt_ps((__m512)pack);
+    if constexpr (sizeof(Pack) == 64 && sizeof(Element) == 8) return (Pack)_mm512_sqrt_pd((__m512d)pack);
+#endif
+    for (std::size_t i = 0; i < sizeof(Pack) / sizeof(Element); ++i) pack[i] = square_root(Element{pack[i]});
+    return pack;
+}
+
+template<class Pack>
+[[gnu::always_inline]] inline bool any_of_pack(Pack flags) {
+#ifdef __SSE2__
+    if constexpr (sizeof(Pack) == 16) return _mm_movemask_epi8((__m128i)flags) != 0;
+#endif
+#ifdef __AVX__
+    if constexpr (sizeof(Pack) == 32) return _mm256_testz_si256((__m256i)flags, (__m256i)flags) == 0;
+#endif
+#ifdef __AVX512F__
+    if constexpr (sizeof(Pack) == 64) return _mm512_test_epi32_mask((__m512i)flags, (__m512i)flags) != 0;
+#endif
+    bool any = false;
+    for (std::size_t i = 0; i < sizeof(Pack) / sizeof(flags[0]); ++i) any |= flags[i] != 0;
+    return any;
+}
+
+/// Place `number` of a pack of half the first column, then half the second, of the rows in two packs.
+constexpr int of_two_columns(int number, int size, int column) {
+    const int half = size / 2;
+    return 4 * (number % half) + column + number / half;
+}
+
+template<int column, class Pack, std::size_t... I>
+[[gnu::always_inline]] inline Pack two_columns(Pack a, Pack b, std::index_sequence<I...>) {
+    return __builtin_shufflevector(a, b, of_two_columns(I, sizeof...(I), column)...);
+}
+
+template<int half, class Pack, std::size_t... I>
+[[gnu::always_inline]] inline Pack halves(Pack a, Pack b, std::index_sequence<I...>) {
+    constexpr int size = sizeof...(I);
+    return __builtin_shufflevector(a, b,
+                                   (half * size / 2 + static_cast<int>(I) % (size / 2)
+                                    + (static_cast<int>(I) < size / 2 ? 0 : size))...);
+}
+
+/// The first three columns of as many rows of four as a pack has elements.
+template<class Row, class Pack>
+[[gnu::always_inline]] inline void take_rows(const Row* rows, Pack& x, Pack& y, Pack& z) {
+    constexpr auto all = std::make_index_sequence<sizeof(Pack) / sizeof(x[0])>();
+    Pack part[4];
+    __builtin_memcpy(part, rows, sizeof(part));
+    const Pack first = two_columns<0>(part[0], part[1], all), second = two_columns<0>(part[2], part[3], all);
+    x = halves<0>(first, second, all);
+    y = halves<1>(first, second, all);
+    z = halves<0>(two_columns<2>(part[0], part[1], all), two_columns<2>(part[2], part[3], all), all);
+}
+
+template<class Pack>
+[[gnu::always_inline]] inline uint count_of_pack(Pack flags) {
+    uint count = 0;
+    if (!any_of_pack(flags)) return count;
+    for (std::size_t i = 0; i < sizeof(Pack) / sizeof(flags[0]); ++i) count += flags[i] != 0 ? 1u : 0u;
+    return count;
+}
+
+template<class Pack>
+[[gnu::always_inline]] inline Pack numbers_of_pack() {
+    Pack numbers{};
+    for (std::size_t i = 0; i < sizeof(Pack) / sizeof(numbers[0]); ++i) numbers[i] = i;
+    return numbers;
 }
 
 struct HostBuffer : Buffer::Impl {

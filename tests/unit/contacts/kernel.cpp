@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The contact kernel on every available device against the serial reference: equal bits.
+#include "backends/host/host_device.h"
 #include "tests/support/test.h"
 #include "tests/unit/contacts/kernels.h"
 
@@ -122,6 +123,9 @@ protected:
             for (auto& device : backend.devices)
                 if (sizeof(Real) == 4 || device->info().has_double) devices.push_back(std::move(device));
         ASSERT_FALSE(devices.empty());
+        // The host's kernels work on packs of elements, whose size depends on the level of instructions.
+        for (const auto levels = host::compiled_levels(); const int level : levels)
+            if (level != *levels.rbegin()) devices.push_back(host::make_device(level));
     }
 
     /// Group sizes to run with: the host runs groups of one.
