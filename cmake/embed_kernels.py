@@ -5,7 +5,7 @@ headers with the arguments of each kernel.
 A kernel file says in one line of which defines its host code is compiled once for each value, and whether it
 has loops over lanes, which are compiled for several levels of x86-64:
 
-    // Host variants: AXES K PRECISION SLABS=0|1, in lanes; of higher levels: PRECISION=32 SLABS=0
+    // Host variants: AXES K PRECISION SLABS=0|1, in lanes; of higher levels: PRECISION=32 SLABS=1
 
 AXES, K and PRECISION have the values of the build's geometries. Levels above the lowest have only variants with
 the values that follow "of higher levels". All other defines are variables of the host code."""

@@ -2,7 +2,7 @@
 // Refit of tiles. A work-group builds up to 32 tiles of one level and their parent tile, from vertices or
 // from the roots of the level below. Each vertex of a tile is transformed once, into local memory, not once
 // per tetrahedron that shares it.
-// Host variants: AXES K PRECISION SLABS=0|1, in lanes; of higher levels: PRECISION=32 SLABS=0
+// Host variants: AXES K PRECISION SLABS=0|1, in lanes; of higher levels: PRECISION=32 SLABS=1
 #include "backends/portable.h"
 #include "algorithms/hierarchy/tiles.clh"
 

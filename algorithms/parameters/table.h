@@ -99,8 +99,8 @@ inline constexpr auto slabs =
         "SLABS",
         "directions with bounds in leaves: three: three of the k/2, with tests along the rest from "
         "the vertices of pairs that pass; all; touched: all, made only for tiles that the walk "
-        "touches if the last frame touched few; usual: three on processors, on GPUs all up to k = "
-        "12, touched above"}
+        "touches if the last frame touched few; usual: all up to k = 12, touched above, and three "
+        "where touched would take a quarter of the device's memory"}
         .with_alternatives({Slabs::three, Slabs::all});
 
 #define TANDEM_CHOICE(word, traits, help) {#word, ContactRule::word},

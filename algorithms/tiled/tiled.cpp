@@ -40,11 +40,13 @@ public:
     std::span<const Counter> counters() const override { return all_counters; }
 
 private:
-    /// Bounds along all directions on a GPU, unless they take a quarter of its memory.
+    /// Bounds along all directions, of the tiles that the walk touches; three where all would take a quarter
+    /// of the device's memory.
     static Slabs slabs_of_large_k(const Settings& settings, const DeviceInfo& info, const Scene& scene) {
         const double real = settings[tandem::parameters::precision] == Precision::fp64 ? 8 : 4;
         const auto bytes = static_cast<double>(count_walked(scene, walked_of(settings)))
                            * static_cast<double>(settings[tandem::parameters::k]) * real;
+        // Slabs that the walk makes from vertices are of one frame.
         const bool are_swept = settings[tandem::parameters::motion] == Motion::linear;
         return bytes > static_cast<double>(info.global_bytes) / 4 && !are_swept ? Slabs::three
                                                                                 : Slabs::touched;
@@ -53,13 +55,9 @@ private:
     void do_fit(Settings& settings, const DeviceInfo& info, const Scene* scene) const override {
         fit_tiles(settings, info);
         if (settings[tandem::parameters::slabs] != Slabs::usual) return;
-        const bool needs_scene = info.is_gpu && settings[tandem::parameters::k] > 12;
-        if (needs_scene && scene == nullptr) return;
-        // Slabs that the walk makes from vertices are of one frame.
-        const bool stores_all = info.is_gpu || settings[tandem::parameters::motion] == Motion::linear;
-        const auto chosen = needs_scene  ? slabs_of_large_k(settings, info, *scene)
-                            : stores_all ? Slabs::all
-                                         : Slabs::three;
+        const bool is_large = settings[tandem::parameters::k] > 12;
+        if (is_large && scene == nullptr) return;
+        const auto chosen = is_large ? slabs_of_large_k(settings, info, *scene) : Slabs::all;
         settings.set(tandem::parameters::slabs(chosen));
     }
 
