@@ -12,41 +12,23 @@ namespace tandem {
 
 namespace {
 
-BackendReport find_host() {
-    BackendReport report{.name = "host", .devices = {}, .reason = {}, .drivers = {}};
-    report.devices.push_back(host::make_device());
-    return report;
-}
-
-BackendReport find_opencl() {
-    auto found = opencl::discover();
-    return {.name = "opencl",
-            .devices = std::move(found.devices),
-            .reason = std::move(found.reason),
-            .drivers = std::move(found.drivers)};
-}
-
-BackendReport find_cuda() {
-    auto found = cuda::discover();
-    return {.name = "cuda",
-            .devices = std::move(found.devices),
-            .reason = std::move(found.reason),
-            .drivers = {}};
-}
-
 struct Backend {
     std::string_view name;
-    BackendReport (*find)();
+    BackendReport (*discover)();
 };
 
-constexpr Backend known_backends[] = {{"host", find_host}, {"opencl", find_opencl}, {"cuda", find_cuda}};
+constexpr Backend known_backends[] = {
+    {"host", host::discover}, {"opencl", opencl::discover}, {"cuda", cuda::discover}};
 
 BackendReport guarded(const Backend& backend) {
+    BackendReport report;
     try {
-        return backend.find();
+        report = backend.discover();
     } catch (const std::exception& error) {
-        return {.name = std::string(backend.name), .devices = {}, .reason = error.what(), .drivers = {}};
+        report.reason = error.what();
     }
+    report.name = backend.name;
+    return report;
 }
 
 /// Whether a part of "D+E+..." names the backend, one of its devices, or all devices.

@@ -1,20 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "backends/device.h"
-#include "backends/driver_report.h"
+#include "backends/backend_report.h"
 
 #include <span>
 
 namespace tandem {
-
-/// The devices of one backend, or one sentence on why it has none.
-struct BackendReport {
-    std::string name;                             ///< "host", "opencl" or "cuda"
-    std::vector<std::unique_ptr<Device>> devices; ///< in the backend's order; never null
-    std::string reason; ///< why a device, a driver or the whole backend is missing; empty if none is
-    std::vector<DriverReport> drivers; ///< of OpenCL, all that are registered; empty for other backends
-};
 
 /// Finds the devices of every backend. Never throws.
 std::vector<BackendReport> discover();

@@ -226,8 +226,8 @@ void CudaDevice::check_launch(std::string_view entry, Grid grid, std::size_t arg
 
 } // namespace
 
-Found discover() {
-    Found found;
+BackendReport discover() {
+    BackendReport found;
     try {
         const auto loaded = libraries();
         const int count = device_count(loaded->driver);

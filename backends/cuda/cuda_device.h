@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "backends/device.h"
+#include "backends/backend_report.h"
 
 namespace tandem::cuda {
 
-/// Every device of the driver, in its order, or one sentence on why there is none.
-struct Found {
-    std::vector<std::unique_ptr<Device>> devices; ///< those that could be opened; never null
-    std::string reason; ///< why there is none, or the error of the last that failed; empty without errors
-};
-
-Found discover();
+/// Every device of the driver, in its order. The reason is the error of the last that failed.
+BackendReport discover();
 
 /// A device over a host application's CUcontext and CUstream, which must outlive it. Throws DeviceError.
 std::unique_ptr<Device> adopt(void* context, void* stream);

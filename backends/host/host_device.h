@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "backends/device.h"
+#include "backends/backend_report.h"
 
 #include <set>
 
@@ -13,6 +13,9 @@ namespace tandem::host {
 /// (2, 3 or 4). Results have equal bits at every level. Throws DeviceError when the processor has no compiled
 /// level.
 std::unique_ptr<Device> make_device(int max_level = 4);
+
+/// The one host device.
+BackendReport discover();
 
 /// The levels of x86-64 that kernels with lanes are compiled for (CMake's TANDEM_LEVELS); empty when they are
 /// compiled like all other code.

@@ -220,9 +220,9 @@ void add_part(std::string& reason, const std::string& part) {
 
 } // namespace
 
-Found discover() {
+BackendReport discover() {
     auto listing = list_devices();
-    Found found;
+    BackendReport found;
     found.drivers = registered_drivers();
     found.reason = std::move(listing.reason);
     for (const auto& driver : found.drivers)
