@@ -35,17 +35,9 @@ Digest& Digest::operator+=(const Digest& other) {
 }
 
 FrameCounts& FrameCounts::operator+=(const FrameCounts& other) {
-    count += other.count;
-    body_pairs += other.body_pairs;
-    contacts += other.contacts;
-    degenerate += other.degenerate;
-    without_boundary += other.without_boundary;
-    rejected += other.rejected;
-    undecided_by_filter += other.undecided_by_filter;
-    undecided_by_double += other.undecided_by_double;
-    retries += other.retries;
-    rebuilds += other.rebuilds;
-    batches += other.batches;
+#define TANDEM_ADD(member, ...) member += other.member;
+    TANDEM_FRAME_COUNTS(TANDEM_ADD, TANDEM_ADD)
+#undef TANDEM_ADD
     return *this;
 }
 

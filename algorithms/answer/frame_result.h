@@ -75,19 +75,27 @@ struct DeviceWork {
     std::uint64_t messages = 0;       ///< sent
 };
 
-/// Counts of a frame, which are summed over devices, ranks and batches.
+/// The counts of a frame: ON_DEVICE(member, its counter in kernels/status.clh), or ON_HOST(member).
+// clang-format off
+#define TANDEM_FRAME_COUNTS(ON_DEVICE, ON_HOST) \
+    /** candidate pairs */ ON_DEVICE(count, STATUS_PAIRS) \
+    /** passed to run(), or found */ ON_DEVICE(body_pairs, STATUS_BODY_PAIRS) \
+    /** contact points; 0 unless output=pairs */ ON_DEVICE(contacts, STATUS_CONTACTS) \
+    /** pairs without the boundary faces that the contact rule needs */ ON_DEVICE(without_boundary, STATUS_WITHOUT_BOUNDARY) \
+    /** pairs without contacts because a tetrahedron has no volume */ ON_DEVICE(degenerate, STATUS_DEGENERATE) \
+    /** pairs with a separating axis */ ON_DEVICE(rejected, STATUS_REJECTED) \
+    /** by the certified filter (decision=recheck, exact) */ ON_DEVICE(undecided_by_filter, STATUS_UNDECIDED_BY_FILTER) \
+    /** by double precision (decision=recheck, fp64, exact) */ ON_DEVICE(undecided_by_double, STATUS_UNDECIDED_BY_DOUBLE) \
+    /** trees built because none was kept (leaf_query, tree=scene) */ ON_DEVICE(rebuilds, STATUS_REBUILDS) \
+    /** repetitions of a walk because a buffer was too small */ ON_HOST(retries) \
+    /** number of batches; 1: the frame fitted into memory */ ON_HOST(batches)
+// clang-format on
+
+/// Counts of a frame, which are summed over devices, ranks and batches: the rows of TANDEM_FRAME_COUNTS.
 struct FrameCounts {
-    std::uint64_t count = 0;               ///< candidate pairs
-    std::uint64_t body_pairs = 0;          ///< passed to run(), or found
-    std::uint64_t contacts = 0;            ///< contact points; 0 unless output=pairs
-    std::uint64_t without_boundary = 0;    ///< pairs without the boundary faces that the contact rule needs
-    std::uint64_t degenerate = 0;          ///< pairs without contacts because a tetrahedron has no volume
-    std::uint64_t rejected = 0;            ///< pairs with a separating axis
-    std::uint64_t undecided_by_filter = 0; ///< by the certified filter (decision=recheck, exact)
-    std::uint64_t undecided_by_double = 0; ///< by double precision (decision=recheck, fp64, exact)
-    std::uint64_t retries = 0;             ///< repetitions of a walk because a buffer was too small
-    std::uint64_t rebuilds = 0;            ///< trees built because none was kept (leaf_query, tree=scene)
-    std::uint64_t batches = 0;             ///< number of batches; 1: the frame fitted into memory
+#define TANDEM_MEMBER(member, ...) std::uint64_t member = 0;
+    TANDEM_FRAME_COUNTS(TANDEM_MEMBER, TANDEM_MEMBER)
+#undef TANDEM_MEMBER
 
     /// Adds every count of `other`.
     FrameCounts& operator+=(const FrameCounts& other);

@@ -8,6 +8,8 @@
 
 namespace tandem {
 
+static_assert(STATUS_OWN % 2 == 0, "some add to a counter as to one word of 64 bits");
+
 /// The words of status.clh on one device, and the host's copy of them.
 class Status {
 public:

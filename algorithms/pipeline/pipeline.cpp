@@ -145,15 +145,11 @@ WalkTask Pipeline::task(const AnswerBuffers& answer, LaunchHook* launch_hook) {
 
 FrameResult Pipeline::counts() const {
     FrameResult result;
-    result.body_pairs = status.counter(STATUS_BODY_PAIRS);
-    result.count = status.counter(STATUS_PAIRS);
-    result.contacts = status.counter(STATUS_CONTACTS);
-    result.degenerate = status.counter(STATUS_DEGENERATE);
-    result.without_boundary = status.counter(STATUS_WITHOUT_BOUNDARY);
-    result.rejected = status.counter(STATUS_REJECTED);
-    result.undecided_by_filter = status.counter(STATUS_UNDECIDED_BY_FILTER);
-    result.undecided_by_double = status.counter(STATUS_UNDECIDED_BY_DOUBLE);
-    result.rebuilds = status.counter(STATUS_REBUILDS);
+#define TANDEM_READ(member, word) result.member = status.counter(word);
+#define TANDEM_KEEP(member)
+    TANDEM_FRAME_COUNTS(TANDEM_READ, TANDEM_KEEP)
+#undef TANDEM_READ
+#undef TANDEM_KEEP
     result.batches = 1;
     if (output == Output::digest)
         result.summed =

@@ -58,7 +58,7 @@ std::string lost_text(const Measurement& m) {
 void print_matrix_row(const Cell& cell, const Measurement& m) {
     put("{:<10} {:<12} {:<18} {:>10} {:>9} {:>8} {:>6} {:>9} {:<14} {:>8} {:>10} {:>8}\n",
         name_of(cell.devices), cell.algorithm->name(), cell.preset, m.agreement.digest.count,
-        m.agreement.missing, m.agreement.extra, m.retries,
+        m.agreement.missing, m.agreement.extra, m.counts.retries,
         std::accumulate(m.contacts.begin(), m.contacts.end(), std::uint64_t{0}),
         m.agreement.contact_frames_wrong == 0 ? "yes" : "NO",
         m.errors ? fmt::to_string(m.errors->missed()) : "-",

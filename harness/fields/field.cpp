@@ -116,6 +116,7 @@ void ObjectType::add(const std::string& name, const Type& type, const std::strin
                                       : fmt::format("null or left out before schema {}", occurrence.since);
         auto& description = properties[name]["description"];
         description = fmt::format("{}; {}", description.get<std::string>(), before);
+        properties[name]["since"] = occurrence.since; // a keyword of ours, which validators ignore
     }
     if (!occurrence.optional && !is_newest) type_.schema["required"].push_back(name);
     add_definitions(type_.definitions, type.definitions);

@@ -31,6 +31,8 @@ Json rebuilds_json(const CellRecord& r) { return r.m.samples.empty() ? 0 : r.m.s
 
 const Measurement& measurement_of(const CellRecord& r) { return r.m; }
 
+const FrameCounts& counts_of(const CellRecord& r) { return r.m.counts; }
+
 /// Digests of what was found.
 Fields<CellRecord> found_digests() {
     return {{"digest",
@@ -72,7 +74,7 @@ const Fields<CellRecord>& work_fields() {
     static const auto fields = found_counts()
                                    .of(measurement_of)
                                    .with(found_digests())
-                                   .with(effort_counts().of(measurement_of))
+                                   .with(effort_counts().of(counts_of))
                                    .with(other_counts());
     return fields;
 }

@@ -231,7 +231,7 @@ const Fields<CellRecord>& one_error() {
     static const Fields<CellRecord> fields{
         {"degenerate_pairs", count(),
          "candidate pairs without contacts because a tetrahedron has no certain volume, over all frames",
-         [](auto& r) { return r.m.degenerate; }},
+         [](auto& r) { return r.m.counts.degenerate; }},
         {"deep_contact",
          nullable(deep_contact_fields().type("deepest contact of the first frame with contacts deeper than "
                                              "the smaller body is long, with a rule "

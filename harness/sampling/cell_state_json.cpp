@@ -25,6 +25,18 @@ TANDEM_FIELDS(DeepContact, frame, body_a, tet_a, body_b, tet_b, depth, size)
 TANDEM_FIELDS(Flattened, tetrahedra, body, of_body)
 TANDEM_FIELDS(Agreement, frames, missing, extra, contact_frames_wrong, digest, contact_digest)
 
+void to_json(nlohmann::ordered_json& to, const FrameCounts& counts) {
+#define TANDEM_WRITE(member, ...) to[#member] = counts.member;
+    TANDEM_FRAME_COUNTS(TANDEM_WRITE, TANDEM_WRITE)
+#undef TANDEM_WRITE
+}
+
+void from_json(const nlohmann::ordered_json& from, FrameCounts& counts) {
+#define TANDEM_TAKE(member, ...) from.at(#member).get_to(counts.member);
+    TANDEM_FRAME_COUNTS(TANDEM_TAKE, TANDEM_TAKE)
+#undef TANDEM_TAKE
+}
+
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -59,14 +71,11 @@ std::map<std::string_view, std::uint64_t> counted(const Json& work, const Traver
 
 /// What checking and counting set, other than settings and counts whose names depend on the algorithm.
 const Fields<Measurement>& checked_fields() {
-    static const auto fields =
-        record_parts::found_counts()
-            .with(record_parts::effort_counts())
-            .with({member("degenerate", &Measurement::degenerate), member("errors", &Measurement::errors),
-                   member("deep_contact", &Measurement::deep_contact),
-                   member("flattened", &Measurement::flattened), member("kernels", &Measurement::kernels),
-                   member("first_prepare_ns", &Measurement::prepare_ns),
-                   member("device_bytes", &Measurement::device_bytes)});
+    static const auto fields = record_parts::found_counts().with(
+        {member("counts", &Measurement::counts), member("errors", &Measurement::errors),
+         member("deep_contact", &Measurement::deep_contact), member("flattened", &Measurement::flattened),
+         member("kernels", &Measurement::kernels), member("first_prepare_ns", &Measurement::prepare_ns),
+         member("device_bytes", &Measurement::device_bytes)});
     return fields;
 }
 

@@ -128,13 +128,7 @@ void LocalSampler::add_counts(const FrameResult& result) {
     out_.body_pairs.push_back(result.body_pairs);
     out_.candidate_pairs.push_back(result.count);
     out_.contacts.push_back(result.contacts);
-    out_.degenerate += result.degenerate;
-    out_.without_boundary += result.without_boundary;
-    out_.rejected += result.rejected;
-    out_.undecided_by_filter += result.undecided_by_filter;
-    out_.undecided_by_double += result.undecided_by_double;
-    out_.retries += result.retries;
-    out_.batches += result.batches;
+    out_.counts += result;
 }
 
 /// Checks one answer of the checking replay.

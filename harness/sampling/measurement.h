@@ -2,6 +2,7 @@
 // The results of measuring a cell.
 #pragma once
 
+#include "algorithms/answer/frame_result.h"
 #include "algorithms/bodies/cost.h"
 #include "harness/verify/accuracy/answer_errors.h"
 #include "harness/verify/deep_contact.h"
@@ -112,10 +113,8 @@ struct Measurement {
     std::vector<std::uint64_t> body_pairs, candidate_pairs, contacts; ///< [frame]
     /// [frame] left out by broad=sphere_boxes, as the reference counts; empty with other broad phases.
     std::vector<std::uint64_t> dropped_body_pairs, dropped_candidate_pairs;
-    std::uint64_t walked_tetrahedra = 0; ///< summed over the bodies
-    std::uint64_t without_boundary = 0, degenerate = 0, rejected = 0, undecided_by_filter = 0,
-                  undecided_by_double = 0;
-    std::uint64_t retries = 0, batches = 0;      ///< of the checking replay
+    std::uint64_t walked_tetrahedra = 0;         ///< summed over the bodies
+    FrameCounts counts;                          ///< of the checking replay, over the frames
     std::vector<std::vector<DeviceWork>> shared; ///< [frame][device] of the last sample; empty on one device
     std::uint64_t submissions = 0;               ///< calls that submitted work, in the last sample
     std::map<std::string_view, std::uint64_t> work; ///< by counter, over the frames; empty when not counted

@@ -25,29 +25,29 @@ const Fields<Measurement>& found_counts() {
     return fields;
 }
 
-const Fields<Measurement>& effort_counts() {
-    static const Fields<Measurement> fields{
+const Fields<FrameCounts>& effort_counts() {
+    static const Fields<FrameCounts> fields{
         member("without_boundary", count(),
                "candidate pairs without the boundary faces that the contact rule needs, over all frames; "
                "rejected and undecided_* leave them out, and include them in records without it",
-               &Measurement::without_boundary, {.since = 4}),
+               &FrameCounts::without_boundary, {.since = 4}),
         member("rejected", count(), "candidate pairs that were told apart, over all frames",
-               &Measurement::rejected),
+               &FrameCounts::rejected),
         member("undecided_by_filter", known_count(),
                "candidate pairs that the certified filter could not decide (decision=recheck, exact), over "
                "all frames",
-               &Measurement::undecided_by_filter, {.since = 2}),
+               &FrameCounts::undecided_by_filter, {.since = 2}),
         member(
             "undecided_by_double", known_count(),
             "candidate pairs that double could not decide (decision=recheck, fp64, exact), over all frames",
-            &Measurement::undecided_by_double, {.since = 2}),
+            &FrameCounts::undecided_by_double, {.since = 2}),
         member("retries", count(),
                "walks that ran again because a buffer was too small, over the frames of the checking replay",
-               &Measurement::retries),
+               &FrameCounts::retries),
         member("batches", nullable(integer_from(0)),
                "parts that frames ran in, over the frames of the checking replay: as many as frames unless "
                "memory was short",
-               &Measurement::batches, {.since = 2})};
+               &FrameCounts::batches, {.since = 2})};
     return fields;
 }
 

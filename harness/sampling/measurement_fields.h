@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Fields of a record that are members of a measurement. A child process sends them in the same form.
+// Fields of a record that are members of a measurement.
 #pragma once
 
 #include "harness/fields/field.h"
@@ -7,8 +7,9 @@
 
 namespace tandem::record_parts {
 
-/// Counts of the checking replay, in `work`: what was found, and how much work it took.
+/// What the checking replay found, in `work`.
 const Fields<Measurement>& found_counts();
-const Fields<Measurement>& effort_counts();
+/// How much work it took, as sums over its frames.
+const Fields<FrameCounts>& effort_counts();
 
 } // namespace tandem::record_parts

@@ -49,26 +49,22 @@ NULLABLE_PATHS = {
     *(("sampling", name) for name in OF_SAMPLING),
     *(("work", name) for name in ("undecided_by_filter", "undecided_by_double", "batches")),
 }
-# Fields that records of earlier versions lack.
-SINCE = {
-    "stack_bytes",
-    "chosen",
-    "truth",
-    "inputs",
-    "volume_relative",
-    "no_volume",
-    "deep_contact",
-    "flattened",
+# Fields that records may lack for another reason than their age.
+OPTIONAL_PATHS = {
+    *((name,) for name in ("chosen", "partition")),
+    *(("sampling", "continued"), ("error", "truth", "contacts", "no_volume")),
 }
-SINCE_WORK = (
-    "digest contact_digest submissions rebuilds dropped_body_pairs dropped_candidate_pairs walked_tetrahedra "
-    "without_boundary".split()
-)
-SINCE_PATHS = {
-    *((name,) for name in ("host_work", "ranks", "partition")),
-    *(("work", name) for name in SINCE_WORK),
-    *(("devices", 0, "clock"), ("sampling", "continued"), ("scene", "reading"), ("error", "rounding")),
-}
+
+
+def declared(schema, path):
+    """What the schema says of a field."""
+    node = schema
+    for name in path:
+        while "$ref" in node or "anyOf" in node:
+            node = schema["definitions"][node["$ref"].split("/")[-1]] if "$ref" in node else node["anyOf"][1]
+        fields = node.get("properties", {})
+        node = node["items"] if isinstance(name, int) else fields.get(name) or node["additionalProperties"]
+    return node
 
 
 class Fields(Case):
@@ -93,9 +89,9 @@ class Fields(Case):
         nullable_paths = NULLABLE_PATHS | {
             ("work", "counters", counter) for counter in record["work"]["counters"]
         }
-        optional = (
-            parent in MAPS | {"stages"} or isinstance(name, int) or name in SINCE or path in SINCE_PATHS
-        )
+        schema = self.validator.schema
+        is_new = declared(schema, path).get("since") == schema["properties"]["schema"]["const"]
+        optional = parent in MAPS | {"stages"} or isinstance(name, int) or is_new or path in OPTIONAL_PATHS
         gone = changed(record, path, lambda p, n: p.pop(n))
         self.assertTrue(optional or not self.validator.is_valid(gone), "taken away")
         wrong = {"x": []}

@@ -33,13 +33,16 @@ inline std::size_t least_bytes(Device& on, const Traversal& traversal, const Sce
 /// The parts of a frame's answer that must not depend on memory.
 struct Answer {
     Digest pairs, contacts;
-    std::array<std::uint64_t, 5> counts{};
+    std::map<std::string, std::uint64_t> counts; ///< that devices made
 
-    explicit Answer(const FrameResult& result)
-        : pairs(result.digest()),
-          contacts(result.contact_digest()),
-          counts{result.without_boundary, result.degenerate, result.rejected, result.undecided_by_filter,
-                 result.undecided_by_double} {}
+    explicit Answer(const FrameResult& result) : pairs(result.digest()), contacts(result.contact_digest()) {
+#define TANDEM_COUNT(member, word) counts[#member] = result.member;
+#define TANDEM_NONE(member)
+        TANDEM_FRAME_COUNTS(TANDEM_COUNT, TANDEM_NONE)
+#undef TANDEM_COUNT
+#undef TANDEM_NONE
+        counts.erase("rebuilds"); // a batch starts with another tree, and every device has its own
+    }
     bool operator==(const Answer&) const = default;
 };
 

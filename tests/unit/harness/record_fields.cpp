@@ -64,6 +64,7 @@ TEST(RecordFields, FieldsSinceTheNewestSchemaAreOptional) {
     EXPECT_EQ(schema["required"], Json{"old"});
     EXPECT_EQ(schema["properties"]["old"]["description"], "a; null or left out before schema 3");
     EXPECT_EQ(schema["properties"]["new"]["description"], "b; records from before it have none");
+    EXPECT_EQ(schema["properties"]["new"]["since"], record_schema);
 }
 
 TEST(RecordFields, MembersAreReadBack) {
