@@ -36,7 +36,7 @@ void BufferGuards::fill(Buffer::Impl& buffer) {
 void BufferGuards::fill(std::uint32_t word, std::span<const std::string_view> kept) {
     filling_.assign(fill_words, word);
     for (auto* buffer : buffers_)
-        if (std::ranges::find(kept, buffer->label) == kept.end()) fill(*buffer);
+        if (!buffer->is_table && std::ranges::find(kept, buffer->label) == kept.end()) fill(*buffer);
 }
 
 void BufferGuards::check(Buffer::Impl& buffer) {

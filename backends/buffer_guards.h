@@ -24,7 +24,8 @@ public:
 
     /// Writes the pattern behind a new buffer, whose allocation is `padding` bytes larger than the buffer.
     void add(Buffer::Impl& buffer);
-    /// Fills all buffers but those labelled with one of `kept`, and later every new buffer, with `word`.
+    /// Fills all buffers but those of uploaded() and those labelled with one of `kept`, and later every new
+    /// buffer, with `word`.
     void fill(std::uint32_t word, std::span<const std::string_view> kept);
     /// Checks a buffer before it is freed; the next check() reports the result.
     void remove(Buffer::Impl& buffer) noexcept;

@@ -171,7 +171,8 @@ public:
 
     /// For tests. Writes a pattern (buffer_guards.h) behind each new buffer; traces do not change.
     void guard_buffers();
-    /// For tests. Fills all buffers but those labelled as in `kept`, and later every new one, with `word`.
+    /// For tests. Fills all buffers but those of uploaded() (upload.h) and those labelled as in `kept`, and
+    /// later every new one, with `word`.
     void fill_buffers(std::uint32_t word, std::span<const std::string_view> kept);
     /// Waits, and throws std::logic_error when something was written past the end of a guarded buffer, also
     /// of one freed since the last call. Does nothing without guard_buffers().

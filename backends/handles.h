@@ -38,6 +38,7 @@ public:
         virtual void* native() const = 0;
         std::size_t bytes = 0; ///< at least the requested size
         std::string label;     ///< its name in traces and errors
+        bool is_table = false; ///< made by uploaded(); Device::fill_buffers() keeps its content
     };
 
     Buffer() = default;

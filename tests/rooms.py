@@ -12,6 +12,7 @@ import unittest
 SOURCE = pathlib.Path(__file__).resolve().parents[1]
 
 PAGE = "docs/developer/rooms.md"
+LIST = "algorithms/list.cpp"
 NAMESPACE = re.compile(r"(?:inline )?namespace ([a-z_0-9:]+) \{")
 INCLUDE = re.compile(r'\s*#\s*include\s*"([^"]+)"')
 ENDINGS = {".h", ".hpp", ".cpp", ".c", ".cl", ".clh", ".cu"}
@@ -33,10 +34,14 @@ def tables(text):
 
 
 class Rules:
-    """Includes that the page allows."""
+    """Includes that the page of a tree allows. WALK is every algorithm of the tree's list."""
 
-    def __init__(self, text):
-        of_page = tables(text)
+    def __init__(self, root):
+        text, algorithms = ((root / name).read_text(encoding="utf-8") for name in (PAGE, LIST))
+        listed = re.search(r"TANDEM_ALGORITHMS\(ALGORITHM\)((?: \\\n *ALGORITHM\(\w+\))+)", algorithms)
+        walks = re.findall(r"ALGORITHM\((\w+)\)", listed[1])
+        text = text.replace("`WALK`", "/".join(f"`{walk}`" for walk in walks))
+        of_page = tables(text.replace("`WALK/`", " ".join(f"`{walk}/`" for walk in walks)))
         self.rooms = {words(row[0])[0]: set(words(row[1])) for row in of_page["Room", "May include"]}
         self.limits = {
             (words(row[0])[0], words(row[1])[0]): (words(row[2]), words(row[3]))
@@ -109,7 +114,7 @@ def files(root):
 
 def check(root):
     """(number of includes, errors); each error begins with FILE:LINE."""
-    rules = Rules((root / PAGE).read_text(encoding="utf-8"))
+    rules = Rules(root)
     count, errors = 0, []
     for path in files(root):
         name = path.relative_to(root).as_posix()
@@ -149,11 +154,7 @@ class Rooms(unittest.TestCase):
 
     def test_lists_of_rooms_elsewhere_are_complete(self):
         """What formats, analyses, compiles or digests sources names every room of the library and the program."""
-        rooms = set(Rules((SOURCE / PAGE).read_text(encoding="utf-8")).rooms) - {
-            "python/core",
-            "tests",
-            "scripts",
-        }
+        rooms = set(Rules(SOURCE).rooms) - {"python/core", "tests", "scripts"}
         self.assertGreater(len(rooms), 5)
         for name in (
             "scripts/check_format",
@@ -166,7 +167,7 @@ class Rooms(unittest.TestCase):
             self.assertLessEqual(rooms, words, name)
 
     def test_the_page_names_rooms_that_exist(self):
-        rules = Rules((SOURCE / PAGE).read_text(encoding="utf-8"))
+        rules = Rules(SOURCE)
         for room, allowed in rules.rooms.items():
             self.assertTrue((SOURCE / room).is_dir(), room)
             self.assertLessEqual(allowed, set(rules.rooms), room)
@@ -186,9 +187,10 @@ class Mistakes(unittest.TestCase):
     def errors(self, text, where="geometry/new.h", many=True):
         with tempfile.TemporaryDirectory() as folder:
             root = pathlib.Path(folder)
-            page = root / PAGE
-            page.parent.mkdir(parents=True)
-            page.write_text((SOURCE / PAGE).read_text(encoding="utf-8"), encoding="utf-8")
+            for name in (PAGE, LIST):
+                (root / name).parent.mkdir(parents=True)
+                text_of_file = re.sub(r"(?m)^#include.*\n", "", (SOURCE / name).read_text(encoding="utf-8"))
+                (root / name).write_text(text_of_file, encoding="utf-8")
             for path in (
                 "base/error.h",
                 "scenes/scene.h",

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // An algorithm of the tests with its own hierarchy and traversal: this file, lbvh.cl, and the line at the end
 // that registers it.
+#include "algorithms/bodies/cost.h"
+#include "algorithms/hierarchy/chunk_trees.h"
 #include "algorithms/parameters/table.h"
 #include "algorithms/pipeline/pipeline.h"
 #include "algorithms/kernels/sources.h"
@@ -258,6 +260,14 @@ public:
 
 private:
     void do_check(const Settings&, const DeviceInfo&) const override {}
+
+    /// A tree over a body has as many nodes as a single chunk.
+    std::vector<KernelCost> do_costs(const Scene& scene, const Settings& settings) const override {
+        const SceneFacts s(scene, settings);
+        auto refit = chunk_tree_costs(s, ChunkTrees::one_chunk_a_body).front();
+        refit.entry = "refit_trees";
+        return {refit, walk_cost(s, "query_leaves")};
+    }
 
     AlgorithmStages do_build(const BuildContext& ground) const override {
         auto trees = std::make_unique<StoredTrees>(ground.bodies, ground.shape.group_size);

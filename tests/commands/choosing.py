@@ -3,6 +3,7 @@
 """--algorithm auto: its candidates, messages, records and files."""
 
 import json
+import math
 import tempfile
 
 from tests.program import SMALL, Case, sets, tandem
@@ -122,7 +123,17 @@ class Choosing(Case):
         for candidate in (*record["chosen"]["candidates"], record):
             kept = {name: candidate["settings"].get(name, value) for name, value in GIVEN.items()}
             self.assertEqual(kept, GIVEN)
-        self.assertEqual(record["chosen"]["of"], 5)  # leaf_query with both of its trees
+        tried = [
+            math.prod(
+                len(one.get("alternatives", [])) or 1
+                for one in each["parameters"]
+                if one["name"] not in GIVEN
+            )
+            for each in json.loads(tandem("algorithms", "--json")[1])
+            if not each["baseline"]
+        ]
+        self.assertEqual(tried.count(2), 1, "leaf_query with both of its trees")
+        self.assertEqual(record["chosen"]["of"], sum(tried))
         self.assertEqual((record["settings"]["k"], record["settings"]["contact_rule"]), ("6", "none"))
 
     def test_failing_candidates_are_not_chosen(self):

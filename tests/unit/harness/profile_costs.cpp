@@ -90,6 +90,7 @@ TEST(ProfileCosts, ThePosesOfManyBodiesHaveAFloor) {
 TEST(ProfileCosts, EveryDeclaredKernelExists) {
     std::string texts;
     for (const auto& source : kernel_sources()) texts += source.text;
+    texts += kernel_source("tests/algorithms/lbvh.cl").text;
     const auto scene = crowd(7, 5, 1.0);
     for (const auto* traversal : algorithms())
         for (const auto& cost : traversal->costs(
