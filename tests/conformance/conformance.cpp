@@ -2,6 +2,7 @@
 // Every algorithm and preset against brute force, on the host and on OpenCL, over a pairwise covering array
 // of settings and group sizes. The tests iterate the list of algorithms, so they cover new entries
 // automatically.
+#include "tests/support/contact_rules.h"
 #include "tests/support/on_device.h"
 #include "tests/support/long_form.h"
 #include "tests/support/sanitized.h"
@@ -102,6 +103,8 @@ std::vector<Axis> axes_of(const Traversal& traversal) {
     if (traversal.name() == "tiled") axes.back().push_back({{"group_size", "256"}});
     for (const auto* settings : {&shared_settings, &settings_of_single_algorithms})
         for (const auto& setting : *settings) axes.push_back(axis_of(setting));
+    axes.emplace_back();
+    for (const auto& [rule, word] : contact_rules()) axes.back().push_back({{"contact_rule", word}});
     std::erase_if(axes, [&](const Axis& axis) { return !declares(traversal, axis.front().begin()->first); });
     for (const auto* parameter : traversal.parameters())
         if (!parameter->takes_integers() && is_own(traversal, *parameter) && !is_listed(parameter->name))

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/narrow_phase/contact_settings.h"
 #include "backends/device.h"
+#include "tests/support/contact_rules.h"
 
 #include <optional>
 #include <string>
 
 namespace tandem {
+
+using support::has_trait;
 
 inline bool is_double(const Defines& defines) {
     return defines.contains("PRECISION") && defines.at("PRECISION") == "64";
@@ -24,37 +26,19 @@ struct Budget {
 /// which spill in double.
 inline Budget contacts_budget(ContactRule rule, bool in_double) {
     const int registers = in_double ? 192 : 128;
-    switch (rule) {
-    case ContactRule::clip:
-        return {registers, in_double ? 2048 : 512};
-    case ContactRule::sat:
-    case ContactRule::restricted:
-    case ContactRule::growth:
-        return {registers, in_double ? 192 : 96};
-    case ContactRule::vertex:
-        return {registers, in_double ? 0 : 16}; // spills that NVRTC chooses in the layout `slots`
-    default:
-        return {registers, 0};
-    }
+    if (has_trait(rule, TANDEM_CUTS_POLYGONS)) return {registers, in_double ? 2048 : 512};
+    if (has_trait(rule, TANDEM_SEARCHES_AXES)) return {registers, in_double ? 192 : 96};
+    // Spills that NVRTC chooses in the layout `slots`.
+    return {registers, rule == ContactRule::vertex && !in_double ? 16 : 0};
 }
 
 /// Budget of the kernel that decides pairs and makes their contacts in one launch. It does the work of three
 /// kernels, for small frames: with at most one pair per running work-item. There occupancy hardly matters, so
 /// that it may use more registers. In double it may use all that a work-item can have, and the rest spills.
 inline Budget at_once_budget(ContactRule rule, bool in_double) {
-    switch (rule) {
-    case ContactRule::clip:
-        return in_double ? Budget{255, 2048} : Budget{168, 512};
-    case ContactRule::sat:
-    case ContactRule::restricted:
-    case ContactRule::growth:
-        return in_double ? Budget{255, 384} : Budget{168, 96};
-    case ContactRule::opposing:
-    case ContactRule::published:
-        return in_double ? Budget{255, 96} : Budget{128, 0};
-    default:
-        return {in_double ? 255 : 128, 0};
-    }
+    const bool cuts = has_trait(rule, TANDEM_CUTS_POLYGONS), searches = has_trait(rule, TANDEM_SEARCHES_AXES);
+    if (!in_double) return {cuts || searches ? 168 : 128, cuts ? 512 : searches ? 96 : 0};
+    return {255, cuts ? 2048 : searches ? 384 : has_trait(rule, TANDEM_BOTH_BOUNDARY) ? 96 : 0};
 }
 
 /// Budget of a kernel of the contact stage. In float it is three eighths of a multiprocessor's work-items

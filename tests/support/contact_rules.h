@@ -22,11 +22,14 @@ inline std::vector<NamedRule> contact_rules() {
     return rules;
 }
 
+/// Whether a rule has a trait of contact_rules.clh.
+inline bool has_trait(ContactRule rule, unsigned trait) { return (traits_of(rule) & trait) != 0; }
+
 /// The rules whose contacts do not depend on the order of the two tetrahedra and of their corners.
 inline std::vector<ContactRule> canonical_contact_rules() {
     std::vector<ContactRule> rules;
     for (const auto& [rule, name] : contact_rules())
-        if ((traits_of(rule) & TANDEM_CANONICAL) != 0) rules.push_back(rule);
+        if (has_trait(rule, TANDEM_CANONICAL)) rules.push_back(rule);
     return rules;
 }
 
