@@ -101,7 +101,7 @@ inline constexpr auto slabs =
         "the vertices of pairs that pass; all; touched: all, made only for tiles that the walk "
         "touches if the last frame touched few; usual: all up to k = 12, touched above, and three "
         "where touched would take a quarter of the device's memory"}
-        .with_alternatives({Slabs::three, Slabs::all});
+        .with_alternatives({Slabs::all});
 
 #define TANDEM_CHOICE(word, traits, help) {#word, ContactRule::word},
 #define TANDEM_HELP(word, traits, help) #word ": " help "; "

@@ -183,7 +183,7 @@ TEST_F(Partitions, ExpectedFramesRunOnce) {
     // expect() is a resident session's own, and only Traversal::prepare makes sessions that check frames.
     const auto session = [&] {
         return ResidentSession(algorithm("tiled"), device("host"), scene,
-                               algorithm("tiled").fitted(settings, device("host").info()));
+                               algorithm("tiled").fitted(settings, device("host").info(), &scene));
     };
     auto unprepared = session(), prepared = session();
     const auto frame = scene.frame(0);
