@@ -206,11 +206,9 @@ typedef float real;
 
 // Conversion of a real to its bits and back: sign, exponent, mantissa.
 #if PRECISION == 64
-typedef ulong RealBits;
 #define EXPONENT_AT 52
 #define LARGEST_EXPONENT 2046
 #else
-typedef uint RealBits;
 #define EXPONENT_AT 23
 #define LARGEST_EXPONENT 254
 #endif

@@ -48,7 +48,6 @@ struct RunOptions {
     std::size_t truth_contacts = 0;         ///< exact contacts of at most this many pairs a frame; 0: all
     MeshReading reading{};                  ///< how mesh files are read and meshes connected
     Degenerate degenerate = Degenerate::flat; ///< how flawed tetrahedra are handled
-    std::optional<std::size_t> threads;       ///< threads of device host, as setting threads
     std::size_t memory = 0;                   ///< memory limit of each device in bytes; 0: none
     std::string filter;                       ///< only cells whose names match; empty: all (cell_filter.h)
     TableFormat format = TableFormat::text;   ///< of printed tables

@@ -61,7 +61,6 @@ void add_cell_options(CLI::App& app, RunOptions& options) {
     app.add_option_function<std::size_t>(
            "--threads",
            [&options](std::size_t threads) {
-               options.threads = threads;
                options.request.sets.push_back({"threads", {std::to_string(threads)}});
            },
            "number of threads of device host, as --set threads=N (default: one for each core)")
