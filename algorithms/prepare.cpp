@@ -286,10 +286,13 @@ std::unique_ptr<Session> Traversal::prepare(std::span<Device* const> devices, co
     const auto origin = geometry_of(settings).origin;
     const auto moved = centred(scene, origin);
     const auto& on_devices = moved ? *moved : scene;
-    auto session = devices.size() > 1 ? split_session(*this, devices, on_devices, fitting)
-                   : is_published(settings)
-                       ? published_session(*this, device, on_devices, fitting.front())
-                       : std::make_unique<ResidentSession>(*this, device, on_devices, fitting.front());
+    std::unique_ptr<Session> session;
+    compile_together(devices, [&] {
+        session = devices.size() > 1 ? split_session(*this, devices, on_devices, fitting)
+                  : is_published(settings)
+                      ? published_session(*this, device, on_devices, fitting.front())
+                      : std::make_unique<ResidentSession>(*this, device, on_devices, fitting.front());
+    });
     session->begin_at(scene, moved);
     return session;
 }

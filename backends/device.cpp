@@ -161,26 +161,35 @@ void Device::clear(const Buffer& buffer, std::size_t bytes, std::size_t offset) 
 
 Kernel Device::compile(const KernelSource& source, std::string_view entry, const Defines& defines) {
     const auto key = kernel_key(source, entry, defines);
-    if (const auto found = kernels_.find(key); found != kernels_.end()) {
-        auto& known = found->second;
-        if (!std::exchange(known.requested, true)) {
-            requested_.push_back(known.kernel.facts());
-            requested_.back().compile_ms = 0;
-        }
-        return known.kernel;
+    auto found = kernels_.find(key);
+    if (found == kernels_.end()) {
+        const auto begin = Clock::now();
+        auto impl = do_compile(source, entry, defines);
+        impl->facts.entry = entry;
+        impl->facts.defines = defines;
+        impl->facts.compile_ms += static_cast<double>(nanoseconds_since(begin)) * 1e-6;
+        found = kernels_.emplace(key, Compiled{Kernel(std::move(impl))}).first;
     }
-    const auto begin = Clock::now();
-    auto impl = do_compile(source, entry, defines);
-    impl->facts.entry = entry;
-    impl->facts.defines = defines;
-    impl->facts.compile_ms = static_cast<double>(nanoseconds_since(begin)) * 1e-6;
-    requested_.push_back(impl->facts);
-    return kernels_.emplace(key, Compiled{Kernel(std::move(impl)), true}).first->second.kernel;
+    if (together_ > 0)
+        incomplete_.push_back(&found->second);
+    else
+        complete(found->second);
+    return found->second.kernel;
+}
+
+void Device::complete(Compiled& known) {
+    known.kernel.impl().complete();
+    if (!std::exchange(known.requested, true)) requested_.push_back(known.kernel.facts());
+}
+
+void Device::complete_kernels() {
+    for (auto* known : std::exchange(incomplete_, {})) complete(*known);
 }
 
 void Device::launch(const Kernel& kernel, Grid grid, std::span<const Argument> arguments) {
     if (grid.groups == 0) return;
     if (check_) check_();
+    if (together_ > 0) kernel.impl().complete();
     check_group_size(info(), kernel.facts(), grid.group_size);
     submit({.command = Command::launch,
             .groups = grid.groups,
@@ -224,7 +233,10 @@ void Device::set_clocks(Clocks clocks) {
 }
 
 std::vector<KernelFacts> Device::take_kernels() {
-    for (auto& [key, known] : kernels_) known.requested = false;
+    for (auto& [key, known] : kernels_) {
+        known.requested = false;
+        known.kernel.impl().facts.compile_ms = 0;
+    }
     return std::exchange(requested_, {});
 }
 

@@ -50,6 +50,7 @@ struct DeviceInfo {
     bool has_double = true;             ///< kernels can use double
     bool has_directed_rounding = false; ///< kernels can add with rounding down and up
     bool stages_pinned = false;         ///< non-blocking uploads use page-locked memory
+    std::uint32_t compilers = 1;        ///< kernel files that are compiled at the same time
 };
 
 /// Whether commands are recorded, with device timestamps. When off, the default, no clock is read, no event
@@ -100,6 +101,20 @@ public:
     /// Compiles once per (source, entry, defines) and device. Throws DeviceError with the compiler's log in
     /// one line.
     Kernel compile(const KernelSource& source, std::string_view entry, const Defines& defines);
+    /// Compiles the kernels that `work` requests at the same time, as far as DeviceInfo::compilers allows.
+    /// They are complete when the outermost call returns; a launch within it waits for its kernel. Throws the
+    /// first error of a compiler.
+    template<class Work>
+    void compile_together(const Work& work) {
+        ++together_;
+        try {
+            work();
+        } catch (...) {
+            if (--together_ == 0) incomplete_.clear();
+            throw;
+        }
+        if (--together_ == 0) complete_kernels();
+    }
     /// Runs a kernel with its arguments in order; zero groups launch nothing. Throws DeviceError when the
     /// groups are larger than the kernel allows.
     void launch(const Kernel& kernel, Grid grid, std::span<const Argument> arguments);
@@ -156,7 +171,7 @@ public:
     void profile(bool on) { do_profile(on); }
 
     /// The facts of every kernel requested since the last call, each once; compile_ms is 0 for kernels
-    /// compiled before.
+    /// compiled before. Not within compile_together().
     std::vector<KernelFacts> take_kernels();
 
     /// Bytes of all live buffers, without adopted ones.
@@ -195,7 +210,7 @@ private:
 
     struct Compiled {
         Kernel kernel;
-        bool requested = false; ///< its facts are in requested_
+        bool requested = false; ///< it is in requested_
     };
 
     // Implemented by adaptors. A command returns the ticket of its timestamps, 0 when clocks are off. Ranges
@@ -234,8 +249,14 @@ private:
     void record(Event event, std::chrono::steady_clock::time_point begin);
     std::optional<Stage> set_stage(std::optional<Stage> stage) { return std::exchange(stage_, stage); }
 
+    void complete(Compiled& known);
+    /// Waits for the compilers of compile_together().
+    void complete_kernels();
+
     std::map<std::string, Compiled> kernels_;
     std::vector<KernelFacts> requested_;
+    int together_ = 0;                  ///< nested calls of compile_together()
+    std::vector<Compiled*> incomplete_; ///< requested within them
     std::shared_ptr<std::size_t> allocated_ = std::make_shared<std::size_t>(0);
     std::size_t memory_limit_ = no_memory_limit;
     std::shared_ptr<BufferGuards> guards_; ///< null without guard_buffers()
@@ -247,6 +268,15 @@ private:
     std::function<void()> check_;
     std::uint64_t submissions_ = 0;
 };
+
+/// Device::compile_together() of several devices.
+template<class Work>
+void compile_together(std::span<Device* const> devices, const Work& work) {
+    if (devices.empty())
+        work();
+    else
+        devices.front()->compile_together([&] { compile_together(devices.subspan(1), work); });
+}
 
 /// Assigns the commands of its lifetime to a stage; an inner scope takes precedence until it ends. Must end
 /// before its device does. A profiler shows it as a range of that name.

@@ -78,7 +78,10 @@ public:
     /// Base class of an adaptor's kernel, which adds the vendor's handle.
     struct Impl {
         virtual ~Impl() = default;
-        KernelFacts facts; ///< complete when Device::compile returns
+        /// Waits for its compiler, if that still runs, and completes the facts. Throws what the compiler
+        /// reports, each time it is called.
+        virtual void complete() {}
+        KernelFacts facts; ///< complete when Device::compile, or Device::compile_together, returns
     };
 
     Kernel() = default;

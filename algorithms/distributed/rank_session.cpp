@@ -107,8 +107,10 @@ void RankSession::build_session(const std::vector<std::uint32_t>& bodies) {
     local_frame_ = {std::vector<Pose>(bodies.size()),
                     std::vector<std::vector<Eigen::Vector3d>>(bodies.size())};
     local_next_ = local_frame_;
-    session_ =
-        std::make_unique<ResidentSession>(traversal_, *devices_.front(), *local_scene_, settings_, answers);
+    auto& device = *devices_.front();
+    device.compile_together([&] {
+        session_ = std::make_unique<ResidentSession>(traversal_, device, *local_scene_, settings_, answers);
+    });
     if (counts_work_) session_->count_work(true);
 }
 

@@ -91,7 +91,7 @@ CudaDevice::CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle
     : libraries_(std::move(libraries)),
       description_(describe(*libraries_, handle, fmt::format("cuda:{}", index))),
       context_(primary_context(handle)),
-      modules_(*libraries_, description_, context_),
+      modules_(*libraries_, description_, context_, queue_),
       queue_(*libraries_, description_.info, context_, stream, counter()) {}
 
 CudaDevice::CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle, Context context,
@@ -99,7 +99,7 @@ CudaDevice::CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle
     : libraries_(std::move(libraries)),
       description_(describe(*libraries_, handle, "cuda:adopted")),
       context_(context),
-      modules_(*libraries_, description_, context_),
+      modules_(*libraries_, description_, context_, queue_),
       queue_(*libraries_, description_.info, context_, stream, counter()) {}
 
 Context CudaDevice::primary_context(DeviceHandle handle) {
@@ -178,8 +178,7 @@ std::uint64_t CudaDevice::do_clear(Buffer::Impl& buffer, std::size_t bytes, std:
 
 std::shared_ptr<Kernel::Impl> CudaDevice::do_compile(const KernelSource& source, std::string_view entry,
                                                      const Defines& defines) {
-    const Queue::Scope scope(queue_);
-    return modules_.compile(queue_, source, entry, defines);
+    return modules_.compile(source, entry, defines);
 }
 
 /// Earlier commands finish first, so that a profiler counts only commands between the two calls.

@@ -2,6 +2,7 @@
 #include "backends/cuda/description.h"
 
 #include "backends/cuda/call_error.h"
+#include "backends/cuda/modules.h"
 #include "backends/hardware.h"
 
 #include <algorithm>
@@ -72,6 +73,7 @@ Description describe(const Libraries& libraries, DeviceHandle handle, std::strin
     info.compiler = fmt::format("NVRTC {} for sm_{}", version_text(libraries.nvrtc.version()), capability);
     info.is_gpu = true;
     info.has_directed_rounding = true;
+    info.compilers = compilers_at_once();
     info.stages_pinned = true;
     info.compute_units = static_cast<std::uint32_t>(queries.attribute(multiprocessor_count));
     info.max_group_size = static_cast<std::uint32_t>(queries.attribute(max_threads_per_block));

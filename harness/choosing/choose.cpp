@@ -186,7 +186,10 @@ void choose(Cell& cell, const Scene& scene, const FrameRange& range, const Choos
     for (auto* device : cell.devices) device->set_clocks(Clocks::off);
     std::vector<std::unique_ptr<Session>> sessions(all.size());
     Race race(
-        all, {.prepare = [&](std::size_t i) { sessions[i] = prepare_session(all[i], scene); },
+        all, {.prepare =
+                  [&](std::size_t i) {
+                      if (!sessions[i]) sessions[i] = prepare_session(all[i], scene);
+                  },
               .replay = [&](std::size_t i) { return replayed(all[i], *sessions[i], range, frames, options); },
               .free = [&](std::size_t i) { sessions[i].reset(); },
               .decided = [&](double own) { return decided(team, own); },

@@ -27,6 +27,19 @@ bool is_crowded(const Device* device) {
     return device->bytes_allocated() > capacity / 4;
 }
 
+/// The number of kernel files that its devices compile at the same time. Ranks prepare one after the other,
+/// because each preparation is collective.
+std::size_t compilers_of(const Cell& cell) {
+    std::size_t least =
+        cell.team != nullptr || cell.devices.empty() ? 1 : cell.devices.front()->info().compilers;
+    for (const auto* device : cell.devices) least = std::min<std::size_t>(least, device->info().compilers);
+    return least;
+}
+
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
 } // namespace
 
 /// Does work with a candidate. An error ends it.
@@ -55,6 +68,28 @@ void Race::free_all() {
     for (std::size_t i = 0; i < runners_.size(); ++i) free(i);
 }
 
+/// Makes the sessions of a candidate and of those after it, as many as its device compiles at the same time.
+/// If one of them fails, each is prepared on its own.
+void Race::prepare_ahead(std::size_t first) {
+    if (first < ahead_) return;
+    ahead_ = std::min(candidates_.size(), first + compilers_of(candidates_[first]));
+    if (ahead_ - first < 2) return;
+    const auto begin = std::chrono::steady_clock::now();
+    const auto free_new = [&] {
+        for (auto i = first; i < ahead_; ++i) free(i);
+    };
+    try {
+        compile_together(candidates_[first].devices, [&] {
+            for (auto i = first; i < ahead_; ++i) steps_.prepare(i);
+        });
+    } catch (const DeviceError&) {
+        free_new();
+    } catch (const InputError&) {
+        free_new();
+    }
+    preparing_ += seconds_since(begin);
+}
+
 bool Race::prepare(std::size_t candidate) {
     if (!failure(candidate).empty()) return false;
     if (runners_[candidate].has_session) return true;
@@ -73,8 +108,7 @@ bool Race::prepare(std::size_t candidate) {
             make();
         }
     });
-    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
-    preparing_ += steps_.decided(time.count());
+    preparing_ += steps_.decided(seconds_since(begin));
     return works;
 }
 
@@ -134,6 +168,7 @@ std::vector<std::size_t> Race::run(double seconds) {
         return measured_ < seconds / 2 && preparing_ < preparing_per_measuring * seconds;
     };
     for (std::size_t i = 0; i < candidates_.size() && (alive_.empty() || has_time()); ++i) {
+        prepare_ahead(i);
         alive_.push_back(i);
         try_once(i);
         drop_behind();

@@ -19,7 +19,7 @@ struct Replayed {
 
 /// How a candidate, by its number, is run. With ranks, calls are collective.
 struct RaceSteps {
-    std::function<void(std::size_t)> prepare; ///< makes its session
+    std::function<void(std::size_t)> prepare; ///< makes its session, unless it has one
     std::function<Replayed(std::size_t)> replay;
     std::function<void(std::size_t)> free;                                  ///< frees its session
     std::function<double(double)> decided = [](double own) { return own; }; ///< the value of rank 0
@@ -62,6 +62,7 @@ private:
     template<class Work>
     bool survives(std::size_t candidate, const Work& work);
     bool prepare(std::size_t candidate);
+    void prepare_ahead(std::size_t first);
     void free(std::size_t candidate);
     void free_all();
     std::int64_t replay(std::size_t candidate);
@@ -75,6 +76,7 @@ private:
     std::vector<std::size_t> alive_, dropped_; ///< dropped: in the order of dropping
     std::optional<std::uint64_t> found_;       ///< pairs, or contacts, of the first candidate that works
     std::uint64_t pairs_ = 0;
+    std::size_t ahead_ = 0; ///< prepare_ahead() has prepared the candidates before this one
     double measured_ = 0, preparing_ = 0;
 };
 

@@ -246,7 +246,8 @@ template<class Frames>
 std::vector<Trial> Collider::choose_for(const Frames& frames, double seconds) {
     std::vector<std::unique_ptr<Session>> sessions(candidates_.size());
     const auto prepare = [&](std::size_t i) {
-        sessions[i] = candidates_[i].algorithm->prepare(devices_, scene_, candidates_[i].settings);
+        if (!sessions[i])
+            sessions[i] = candidates_[i].algorithm->prepare(devices_, scene_, candidates_[i].settings);
     };
     const auto replay = [&](std::size_t i) -> Replayed {
         const auto begin = std::chrono::steady_clock::now();
@@ -259,7 +260,7 @@ std::vector<Trial> Collider::choose_for(const Frames& frames, double seconds) {
     const auto ranking = race.run(seconds);
     if (ranking.empty()) throw InputError(race.failure(0));
     const auto best = ranking.front();
-    if (!sessions[best]) prepare(best);
+    prepare(best);
     session_ = std::move(sessions[best]);
     algorithm_ = candidates_[best].algorithm->name();
     std::vector<Trial> trials;

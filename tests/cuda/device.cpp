@@ -48,6 +48,41 @@ TEST_F(CudaDevice, LeavesTheCurrentContextAlone) {
     EXPECT_EQ(current(), other);
 }
 
+TEST_F(CudaDevice, CompilesFilesTogether) {
+    const auto compilers = std::min(2U, device->info().compilers); // one on a machine with one processor
+    setenv("STUB_COMPILERS", std::to_string(compilers).c_str(), 1);
+    const StageScope scope(*device, Stage::traverse);
+    const auto words = device->allocate(64, "words");
+    const std::array<Argument, 1> arguments{words};
+    device->compile_together([&] {
+        const auto one = unit_test::compile(*device, "do_nothing", {{"GROUP_SIZE", "1"}});
+        unit_test::compile(*device, "do_nothing", {{"GROUP_SIZE", "2"}});
+        EXPECT_EQ(one.facts().max_group_size, -1) << "complete before it is needed";
+        device->launch(one, {1, 1}, arguments);
+        EXPECT_EQ(one.facts().max_group_size, 1024);
+    });
+    unsetenv("STUB_COMPILERS");
+    const auto facts = device->take_kernels();
+    ASSERT_EQ(facts.size(), 2u);
+    EXPECT_EQ(facts[1].max_group_size, 1024);
+    EXPECT_EQ(facts[1].defines.at("GROUP_SIZE"), "2");
+}
+
+TEST_F(CudaDevice, ReportsTheFirstErrorOfCompilersAtTheEnd) {
+    setenv("STUB_BROKEN", "1", 1);
+    bool ended = false;
+    const auto compile = [&] { unit_test::compile(*device, "do_nothing"); };
+    EXPECT_THROW(device->compile_together([&] {
+        device->compile_together(compile);
+        ended = true;
+    }),
+                 DeviceError);
+    EXPECT_TRUE(ended);
+    unsetenv("STUB_BROKEN");
+    EXPECT_THROW(compile(), DeviceError); // it is not compiled twice
+    EXPECT_TRUE(device->take_kernels().empty());
+}
+
 TEST_F(CudaDevice, AdoptedRunsOnTheGivenStreamOfTheGivenContext) {
     CUstream_st* stream = nullptr;
     make_current(other);

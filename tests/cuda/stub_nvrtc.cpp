@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: MIT
 // An NVRTC that compiles everything to a few bytes. STUB_NVRTC is its major version; with STUB_BROKEN it
-// fails.
+// fails. With STUB_COMPILERS a compilation waits until so many have begun, and fails after a minute.
 #include "backends/cuda/nvrtc.h"
 
+#include <atomic>
+#include <chrono>
 #include <cstdlib>
 
 using namespace tandem::cuda;
+
+namespace {
+std::atomic<int> compiling = 0; ///< calls of nvrtcCompileProgram since STUB_COMPILERS was set
+} // namespace
 
 extern "C" {
 NvrtcResult nvrtcVersion(int* major, int* minor) {
@@ -30,6 +36,12 @@ NvrtcResult nvrtcCreateProgram(Program* program, const char*, const char*, int, 
 }
 NvrtcResult nvrtcDestroyProgram(Program*) { return 0; }
 NvrtcResult nvrtcCompileProgram(Program, int, const char* const*) {
+    if (const auto* text = std::getenv("STUB_COMPILERS")) {
+        ++compiling;
+        const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+        while (compiling < std::atoi(text))
+            if (std::chrono::steady_clock::now() > end) return 6;
+    }
     return std::getenv("STUB_BROKEN") != nullptr ? 6 : 0;
 }
 NvrtcResult nvrtcGetProgramLogSize(Program, std::size_t* size) {

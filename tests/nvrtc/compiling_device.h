@@ -11,7 +11,8 @@ namespace tandem {
 /// memory, and its commands do nothing.
 class CompilingDevice : public Device {
 public:
-    CompilingDevice() {
+    explicit CompilingDevice(std::uint32_t compilers = 1) {
+        info_.compilers = compilers;
         info_.id = "nvrtc";
         info_.name = "a GPU that is not there";
         info_.is_gpu = true;

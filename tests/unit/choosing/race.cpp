@@ -2,6 +2,7 @@
 #include "harness/choosing/race.h"
 
 #include "base/random.h"
+#include "tests/nvrtc/compiling_device.h"
 #include "tests/support/cells.h"
 
 #include <gmock/gmock.h>
@@ -23,14 +24,17 @@ struct Bench {
     std::function<double()> noise = [] { return 1.0; }; ///< factor on the time of a replay
     std::set<std::size_t> failing{}, other{};           ///< that fail, and that find other pairs
     std::vector<std::size_t> order{};                   ///< the candidate of every replay
+    Device* device = &support::device("host");
     std::set<std::size_t> prepared{};
-    std::vector<Cell> cells{times.size(), make_cell(*algorithms()[0], algorithms()[0]->presets()[0], {},
-                                                    {&support::device("host")})};
+    std::size_t most_prepared = 0; ///< at once
+    std::vector<Cell> cells{times.size(),
+                            make_cell(*algorithms()[0], algorithms()[0]->presets()[0], {}, {device})};
     Race race{cells,
               {.prepare =
                    [this](std::size_t i) {
                        if (failing.contains(i)) throw DeviceError("lost");
                        prepared.insert(i);
+                       most_prepared = std::max(most_prepared, prepared.size());
                    },
                .replay = [this](std::size_t i) -> Replayed {
                    EXPECT_TRUE(prepared.contains(i));
@@ -97,6 +101,22 @@ TEST(ChoosingRace, RespectsItsTimeLimit) {
     EXPECT_THAT(slow.race.times(5), IsEmpty());
     Bench hurried{{5 * ms, 3 * ms}};
     EXPECT_THAT(hurried.race.run(0), ElementsAre(0)); // at least one in any case
+}
+
+/// The second and later candidates are hopeless, so that each is freed after its trial.
+TEST(ChoosingRace, PreparesAsManyTogetherAsTheDeviceCompilesAtOnce) {
+    const std::vector<std::int64_t> times{1 * ms, 9 * ms, 9 * ms, 9 * ms, 9 * ms};
+    Bench one{times};
+    EXPECT_THAT(one.race.run(10), ElementsAre(0, 4, 3, 2, 1));
+    EXPECT_EQ(one.most_prepared, 2u);
+    CompilingDevice device(3);
+    Bench three{times, [] { return 1.0; }, {}, {}, {}, &device};
+    EXPECT_THAT(three.race.run(10), ElementsAre(0, 4, 3, 2, 1));
+    EXPECT_EQ(three.most_prepared, 3u);
+    EXPECT_THAT(three.prepared, ElementsAre(0));
+    Bench lost{times, [] { return 1.0; }, {1}, {}, {}, &device};
+    EXPECT_THAT(lost.race.run(10), ElementsAre(0, 4, 3, 2));
+    EXPECT_EQ(lost.race.failure(1), "lost");
 }
 
 TEST(ChoosingRace, ContinuesWithoutFailingCandidates) {
