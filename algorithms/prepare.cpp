@@ -125,15 +125,6 @@ void Session::check_frames(const FrameInput& input) const {
     if (input.next != nullptr) of_successor([&] { check_frame(*scene_, *input.next, precision, owned()); });
 }
 
-FrameResult Session::run_among(const FrameView& view, std::optional<std::span<const BodyPair>> body_pairs) {
-    check_motion(view.has_next());
-    if (view.on_host() && !view.is_checked()) check_frames(*view.on_host());
-    check_pairs(body_pairs, view.is_checked());
-    set_threads();
-    return finished(view.on_host() ? run_on_host(*view.on_host(), body_pairs)
-                                   : run_on_device(*view.on_device(), body_pairs));
-}
-
 void Session::begin_at(const Scene& scene, std::shared_ptr<const Scene> centred) {
     scene_ = &scene;
     centred_ = std::move(centred);
@@ -151,18 +142,18 @@ void Session::place(const Frame& frame) {
     do_move_origin();
 }
 
-FrameResult Session::run_on_host(const FrameInput& input,
-                                 std::optional<std::span<const BodyPair>> body_pairs) {
+template<class Work>
+auto Session::with_host_input(const FrameInput& input, const Work& work) {
     place(input.frame);
     const bool at_origin = origin_ == Eigen::Vector3d::Zero() && !centred_;
     const bool skips_more = input.next != nullptr && input.frame.skipped != input.next->skipped;
-    if (at_origin && !skips_more) return do_run(input, body_pairs);
+    if (at_origin && !skips_more) return work(input);
     auto frame = at_origin ? input.frame : as_on_devices(input.frame);
-    if (input.next == nullptr) return do_run(frame, body_pairs);
+    if (input.next == nullptr) return work(frame);
     if (skips_more) frame.skipped = skipped_in_either(input.frame.skipped, input.next->skipped);
-    if (at_origin) return do_run({frame, input.next}, body_pairs);
+    if (at_origin) return work({frame, input.next});
     const auto next = as_on_devices(*input.next);
-    return do_run({frame, &next}, body_pairs);
+    return work({frame, &next});
 }
 
 Frame Session::as_on_devices(const Frame& frame) const {
@@ -170,17 +161,51 @@ Frame Session::as_on_devices(const Frame& frame) const {
     return centred_ ? shifted(*centred_, std::move(counted)) : counted;
 }
 
-FrameResult Session::run_on_device(const DeviceFrameInput& input,
-                                   std::optional<std::span<const BodyPair>> body_pairs) {
+template<class Work>
+auto Session::with_device_input(const DeviceFrameInput& input, const Work& work) {
     check_fits(*scene_, input.frame);
     if (!is_placed_ && devices().size() == 1) // several devices refuse the frame
         place(downloaded(*devices().front(), *scene_, input.frame));
     if (input.next != nullptr) check_fits(*scene_, *input.next);
-    if (input.next == nullptr || input.frame.skipped == input.next->skipped)
-        return do_run_device_input(input, body_pairs);
+    if (input.next == nullptr || input.frame.skipped == input.next->skipped) return work(input);
     auto frame = input.frame;
     frame.skipped = skipped_in_either(input.frame.skipped, input.next->skipped);
-    return do_run_device_input({frame, input.next}, body_pairs);
+    return work({frame, input.next});
+}
+
+void Session::check_call(const FrameView& view, std::optional<std::span<const BodyPair>> body_pairs) const {
+    check_motion(view.has_next());
+    if (view.on_host() && !view.is_checked()) check_frames(*view.on_host());
+    check_pairs(body_pairs, view.is_checked());
+    set_threads();
+}
+
+FrameResult Session::run_among(const FrameView& view, std::optional<std::span<const BodyPair>> body_pairs) {
+    check_call(view, body_pairs);
+    return finished(view.on_host() ? with_host_input(
+                        *view.on_host(), [&](const FrameInput& input) { return do_run(input, body_pairs); })
+                                   : with_device_input(*view.on_device(), [&](const DeviceFrameInput& input) {
+                                         return do_run_device_input(input, body_pairs);
+                                     }));
+}
+
+QueuedFrame Session::enqueue_among(const FrameView& view, std::optional<std::span<const BodyPair>> body_pairs) {
+    check_call(view, body_pairs);
+    const bool is_captured = devices().size() == 1 && devices().front()->is_captured();
+    if (is_captured && (view.on_host() || body_pairs))
+        throw InputError("enqueue() in a capture got a frame or body pairs in the host's memory, which the graph "
+                         "would not read again; give a DeviceFrame alone");
+    if (is_captured && !is_placed_) refuse_capture();
+    auto frame = view.on_host() ? with_host_input(*view.on_host(),
+                                                  [&](const FrameInput& input) {
+                                                      return do_enqueue(&input, nullptr, body_pairs);
+                                                  })
+                                : with_device_input(*view.on_device(), [&](const DeviceFrameInput& input) {
+                                      return do_enqueue(nullptr, &input, body_pairs);
+                                  });
+    std::copy_n(origin_.data(), 3, frame.origin.begin());
+    is_placed_ = true;
+    return frame;
 }
 
 /// A session inside this one has subtracted an origin of its own, if any.
@@ -204,6 +229,22 @@ FrameResult Session::do_run_device_input(const DeviceFrameInput&, std::optional<
 void Traversal::do_fit(Settings&, const DeviceInfo&, const Scene*) const {}
 
 std::vector<KernelCost> Traversal::do_costs(const Scene&, const Settings&) const { return {}; }
+
+void Session::refuse_capture() {
+    throw InputError("enqueue() in a capture has memory to allocate and kernels to compile; enqueue a frame before "
+                     "the capture, and again after a run() that has grown buffers");
+}
+
+QueuedFrame Session::do_enqueue(const FrameInput*, const DeviceFrameInput*,
+                                std::optional<std::span<const BodyPair>>) {
+    const auto* const why = devices().size() > 1 ? "several devices share a frame, which the host collects"
+                                                 : "residency=published waits in every frame";
+    throw InputError(fmt::format("{}: {}; call run() instead of enqueue()", names_of(devices()), why));
+}
+
+std::optional<FrameResult> Session::do_collect() {
+    throw InputError("collect() needs a frame; call enqueue() first");
+}
 
 std::vector<KernelCost> Traversal::costs(const Scene& scene, const Settings& settings) const {
     const SceneFacts facts(scene, settings);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "algorithms/answer/frame_result.h"
+#include "algorithms/answer/queued_frame.h"
 #include "algorithms/bodies/body_pair.h"
 #include "algorithms/bodies/frame_input.h"
 #include "algorithms/kernels/counter.h"
@@ -53,6 +54,27 @@ public:
     FrameResult run(const FrameView& frame, std::span<const BodyPair> body_pairs) {
         return run_among(frame, body_pairs);
     }
+    /// Enqueues the commands of a frame without waiting for them. Buffers keep their capacities, those of the
+    /// settings or those to which earlier run() have grown them; a frame that exceeds them is flagged
+    /// (QueuedFrame::counts), and run() of the same frame finds the whole answer. So are frames in device memory
+    /// with rows out of range. A later frame overwrites the answer.
+    /// The first call, and the first after a run() that has grown buffers, prepares: it allocates, may wait, and
+    /// throws what run() throws for rows out of range. On CUDA later calls with a frame in device memory may be
+    /// captured in the caller's graph, which replays with what the same arrays then contain. Throws InputError
+    /// as run(), and where the host takes part in a frame: several devices, residency=published,
+    /// decision=exact, or a walk that needs it; and for a captured frame in the host's memory.
+    QueuedFrame enqueue(const FrameView& frame) { return enqueue_among(frame, std::nullopt); }
+    /// The same for these body pairs, as with run().
+    QueuedFrame enqueue(const FrameView& frame, std::span<const BodyPair> body_pairs) {
+        return enqueue_among(frame, body_pairs);
+    }
+    /// Waits, and returns the answer of the last frame enqueued, of which the counts of pairs, contacts and
+    /// body pairs are set, and the digest with output=digest; nullopt if it is flagged. Throws InputError if none was enqueued since a run() that
+    /// has grown buffers.
+    std::optional<FrameResult> collect() {
+        auto result = do_collect();
+        return result ? std::optional(finished(*std::move(result))) : std::nullopt;
+    }
     /// Switches to kernels that count their work and make no contacts, or back. Such runs are never timed.
     void count_work(bool on) { do_count_work(on); }
     /// The devices of this process; valid as long as the session.
@@ -69,6 +91,12 @@ public:
     /// sessions that do not run frames in the device's memory.
     const Bodies* bodies() const { return do_bodies(); }
 
+protected:
+    /// Throws the InputError of a captured frame before enqueue() has prepared.
+    [[noreturn]] static void refuse_capture();
+    /// As collect(). Throws InputError unless a session overrides it.
+    virtual std::optional<FrameResult> do_collect();
+
 private:
     friend class Traversal; // calls begin_at
     /// Sets scene and origin of a new session. `centred`: what the devices have in place of the scene; null:
@@ -81,10 +109,14 @@ private:
     void check_pairs(std::optional<std::span<const BodyPair>> body_pairs, bool checked) const;
     void check_motion(bool has_next) const;
     void check_frames(const FrameInput& input) const;
+    void check_call(const FrameView& view, std::optional<std::span<const BodyPair>> body_pairs) const;
     FrameResult run_among(const FrameView& view, std::optional<std::span<const BodyPair>> body_pairs);
-    FrameResult run_on_host(const FrameInput& input, std::optional<std::span<const BodyPair>> body_pairs);
-    FrameResult run_on_device(const DeviceFrameInput& input,
-                              std::optional<std::span<const BodyPair>> body_pairs);
+    QueuedFrame enqueue_among(const FrameView& view, std::optional<std::span<const BodyPair>> body_pairs);
+    /// Calls `work` with the frame as the devices have it.
+    template<class Work>
+    auto with_host_input(const FrameInput& input, const Work& work);
+    template<class Work>
+    auto with_device_input(const DeviceFrameInput& input, const Work& work);
     /// The frame as the devices have it: relative to the origin, and to the middles of centred meshes.
     Frame as_on_devices(const Frame& frame) const;
     /// Completes a frame's result, checks the devices' guards, and fixes the origin.
@@ -100,6 +132,9 @@ private:
     /// Runs a checked frame in the device's memory. Throws InputError unless a session overrides it.
     virtual FrameResult do_run_device_input(const DeviceFrameInput& input,
                                             std::optional<std::span<const BodyPair>> body_pairs);
+    /// Throws InputError unless a session overrides it. One of the two frames is null.
+    virtual QueuedFrame do_enqueue(const FrameInput* host, const DeviceFrameInput* device,
+                                   std::optional<std::span<const BodyPair>> body_pairs);
     virtual void do_count_work(bool on) = 0;
     virtual std::span<Device* const> do_devices() const = 0;
     virtual const Settings& do_settings() const = 0;

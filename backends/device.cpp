@@ -141,6 +141,7 @@ Buffer Device::adopt(void* native, std::size_t bytes, std::string_view label) {
 void Device::upload(const Buffer& to, std::span<const std::byte> from, std::size_t offset, bool blocking) {
     check_range(to, offset, from.size(), "upload");
     if (from.empty()) return;
+    if (held_ != nullptr) held_->push_back(to);
     submit({.command = Command::upload, .bytes = from.size(), .blocked = blocking}, to.impl().label,
            [&] { return do_upload(to.impl(), from, offset, blocking); });
 }
@@ -155,6 +156,7 @@ void Device::download(const Buffer& from, std::span<std::byte> to, std::size_t o
 void Device::clear(const Buffer& buffer, std::size_t bytes, std::size_t offset) {
     check_range(buffer, offset, bytes, "clear");
     if (bytes == 0) return;
+    if (held_ != nullptr) held_->push_back(buffer);
     submit({.command = Command::clear, .bytes = bytes}, buffer.impl().label,
            [&] { return do_clear(buffer.impl(), bytes, offset); });
 }
@@ -191,6 +193,10 @@ void Device::launch(const Kernel& kernel, Grid grid, std::span<const Argument> a
     if (check_) check_();
     if (together_ > 0) kernel.impl().complete();
     check_group_size(info(), kernel.facts(), grid.group_size);
+    if (held_ != nullptr)
+        for (const auto& argument : arguments)
+            if (const auto* buffer = std::get_if<Buffer::Impl*>(&argument.value()))
+                held_->emplace_back((*buffer)->shared_from_this());
     submit({.command = Command::launch,
             .groups = grid.groups,
             .group_size = grid.group_size,

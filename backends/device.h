@@ -81,6 +81,12 @@ public:
     /// Later commands run after everything submitted so far to `queue`, a vendor's handle in this device's
     /// context. On OpenCL the host waits for it.
     void follow(void* queue) { do_follow(queue); }
+    /// What is submitted to `queue` later runs after everything submitted so far here. On OpenCL the host waits
+    /// for it.
+    void precede(void* queue) { do_precede(queue); }
+    /// Whether commands are now captured into a graph of the application, as cudaStreamBeginCapture() on the
+    /// queue, or on one that it follows, begins. Such commands must not wait.
+    bool is_captured() { return do_is_captured(); }
 
     /// Allocates at least `bytes` bytes of undefined values. Throws OutOfMemory that names the requested, the
     /// used and the available bytes.
@@ -146,6 +152,9 @@ public:
         collecting_ = false;
         do_end_collecting();
     }
+
+    /// From now on adds the buffers of commands, except of downloads, to `list`; null: no longer.
+    void hold_buffers(std::vector<Buffer>* list) { held_ = list; }
 
     /// The number of submissions so far. Commands that as_one() submits together count once.
     std::uint64_t submissions() const { return submissions_; }
@@ -228,6 +237,8 @@ private:
     virtual std::uint64_t do_launch(Kernel::Impl& kernel, Grid grid, std::span<const Argument> arguments) = 0;
     virtual void do_finish() = 0;
     virtual void do_follow(void* queue) = 0;
+    virtual void do_precede(void* queue) = 0;
+    virtual bool do_is_captured() { return false; }
     /// From now on the adaptor may hold commands back until the end or until one that waits. False: it does
     /// not.
     virtual bool do_begin_collecting() { return false; }
@@ -266,6 +277,7 @@ private:
     bool waited_ = false;
     bool collecting_ = false; ///< within as_one(), on a device that collects
     std::function<void()> check_;
+    std::vector<Buffer>* held_ = nullptr; ///< null without hold_buffers()
     std::uint64_t submissions_ = 0;
 };
 

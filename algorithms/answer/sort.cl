@@ -8,11 +8,6 @@
 #include "algorithms/answer/pairs.clh"
 #include "algorithms/kernels/parts.clh"
 
-// Rows in a buffer of `capacity` rows with a 64-bit counter.
-DEVICE uint rows_in(GLOBAL const uint* counter, uint capacity) {
-    return counter[1] != 0u || counter[0] > capacity ? capacity : counter[0];
-}
-
 // Position of a tetrahedron in the order of the scene: `firsts` has that of each body's first tetrahedron.
 DEVICE uint place_of(const BodyTetrahedron* one, GLOBAL const uint* firsts, GLOBAL const uint* ids) {
     return firsts[one->body] + tetrahedron_id(ids, one->tetrahedron);

@@ -94,6 +94,13 @@ bool ChunkedWalker::do_grow(const Status& status) {
     return true;
 }
 
+std::optional<std::vector<Limit>> ChunkedWalker::do_limits() const {
+    std::vector<Limit> limits;
+    for (std::uint32_t level = 0; level < top_level_; ++level)
+        limits.push_back({STATUS_LEVELS + 2 * level, handed_.capacity()});
+    return limits;
+}
+
 void ChunkedWalker::do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const {
     work[counters::bvtt_nodes.name] += status.counter(STATUS_BVTT_NODES);
     work[counters::seeds.name] += status.counter(STATUS_SEEDS);

@@ -40,6 +40,7 @@ private:
     void do_compile(const WalkBuild& build) override;
     void do_launch(const WalkTask& task) override;
     bool is_in_groups() const { return schedule_ == chunked_parameters::Schedule::group; }
+    std::optional<std::vector<Limit>> do_limits() const override;
     bool do_grow(const Status& status) override;
     void do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const override;
 

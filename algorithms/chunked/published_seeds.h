@@ -14,6 +14,7 @@ public:
 private:
     void do_launch(const WalkTask& task) override;
     bool do_grow(const Status& status) override;
+    std::optional<std::vector<Limit>> do_limits() const override { return std::nullopt; }
 
     template<class Visit>
     void each_of_level(std::span<const BodyPair> pairs, std::uint32_t level, Visit visit) const;

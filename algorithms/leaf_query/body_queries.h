@@ -18,6 +18,7 @@ private:
     void do_compile(const WalkBuild& build) override;
     void do_launch(const WalkTask& task) override;
     bool do_grow(const Status&) override { return false; }
+    std::optional<std::vector<Limit>> do_limits() const override { return std::vector<Limit>{}; }
     void do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const override;
 
     const ChunkTrees& trees_;

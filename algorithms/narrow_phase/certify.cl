@@ -62,7 +62,7 @@ KERNEL void certify_pairs(GLOBAL const uint* found, uint first, uint pair_capaci
     LOCAL_ARRAY(uint, asked, FOUND_CAPACITY);
     LOCAL_ARRAY(uint, waiting, LISTS * FOUND_CAPACITY);
     const Candidates all = {found, owners, poses, tetrahedra, vertices, boundary};
-    const ulong count = stored(status + STATUS_PAIRS, pair_capacity);
+    const ulong count = rows_in(status + STATUS_PAIRS, pair_capacity);
     ulong start = (ulong)first + (GROUP_ID * (uint)GROUP_SIZE) * PACK;
     begin_group(group);
     do {

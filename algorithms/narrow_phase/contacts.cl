@@ -153,7 +153,7 @@ KERNEL void generate_contacts(GLOBAL const uint* found, uint first, uint pair_ca
     const Candidates all = {found, owners, poses, tetrahedra, vertices, boundary};
     const Sink sink = {contact_ids, contact_values, status, contact_capacity};
     const ulong count =
-        AT_ONCE ? stored(status + STATUS_PAIRS, pair_capacity) : status[STATUS_WAITING + LIST_MEETING];
+        AT_ONCE ? rows_in(status + STATUS_PAIRS, pair_capacity) : status[STATUS_WAITING + LIST_MEETING];
     ulong start = (AT_ONCE ? (ulong)first : 0u) + (GROUP_ID * (uint)GROUP_SIZE) * PACK;
     begin_group(group);
     do {

@@ -36,7 +36,7 @@ KERNEL void filter_pairs(GLOBAL const uint* found, uint first, uint pair_capacit
                          GLOBAL uint* undecided_by_filter, GLOBAL uint* status) {
     const Candidates all = {found, owners, poses, tetrahedra, vertices, boundary};
     const ulong count =
-        OVER_OPEN ? status[STATUS_WAITING + LIST_OPEN] : stored(status + STATUS_PAIRS, pair_capacity);
+        OVER_OPEN ? status[STATUS_WAITING + LIST_OPEN] : rows_in(status + STATUS_PAIRS, pair_capacity);
     const ulong step = (ulong)GLOBAL_COUNT * PACK;
     for (ulong i = (OVER_OPEN ? 0u : (ulong)first) + (ulong)GLOBAL_ID * PACK; i < count; i += step) {
         const uint present = elements_below(i, count);

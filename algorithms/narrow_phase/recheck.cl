@@ -20,7 +20,7 @@ KERNEL void recheck_pairs(GLOBAL const uint* found, uint first, uint pair_capaci
                           GLOBAL const uint* undecided_by_filter, GLOBAL uint* undecided_by_double,
                           GLOBAL uint* status) {
     const Candidates all = {found, owners, poses, tetrahedra, vertices, boundary};
-    const uint pairs = stored(status + STATUS_PAIRS, pair_capacity);
+    const uint pairs = rows_in(status + STATUS_PAIRS, pair_capacity);
     const ulong count = RECHECK_ALL ? pairs : status[STATUS_UNDECIDED_BY_FILTER];
     for (ulong i = (RECHECK_ALL ? (ulong)first : 0u) + GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
         const uint index = RECHECK_ALL ? (uint)i : undecided_by_filter[i];

@@ -117,9 +117,10 @@ bool ResidentSession::grow(AnswerBuffers& answer) {
     return again;
 }
 
-/// Enqueues all commands of a frame up to its only wait, as one submission if the host does not interrupt
-/// them. Packing counts in the status, so that Status::begin() comes first.
-void ResidentSession::begin(const Input& input, const AnswerBuffers& answer) {
+/// Enqueues all commands of a frame, as one submission if the host does not interrupt them, and `end` at the
+/// end. Packing counts in the status, so that Status::begin() comes first.
+template<class End>
+void ResidentSession::submit(const Input& input, const AnswerBuffers& answer, const End& end) {
     const auto all = [&] {
         if (input.device != nullptr) pipeline_.status.begin(input.body_pairs ? input.body_pairs->size() : 0);
         refresh(input);
@@ -128,13 +129,18 @@ void ResidentSession::begin(const Input& input, const AnswerBuffers& answer) {
             walk(answer);
         else
             launch(answer);
-        pipeline_.status.read();
+        end();
     };
     if (pipeline_.settings[parameters::submission] == Submission::one && !waits_within_frame(input))
         pipeline_.device.as_one(all);
     else
         all();
     stale_ = false;
+}
+
+/// Enqueues a frame up to its only wait, and waits.
+void ResidentSession::begin(const Input& input, const AnswerBuffers& answer) {
+    submit(input, answer, [&] { pipeline_.status.read(); });
     reject_flaws(input);
 }
 
@@ -148,6 +154,7 @@ FrameResult ResidentSession::run_whole(const Input& input) {
         launch(*answer);
         pipeline_.status.read();
     }
+    if (retries > 0) queued_.reset();
     auto result = pipeline_.counts();
     result.retries = retries;
     if (pipeline_.counting) pipeline_.stages.walker->report(pipeline_.status, result.work);
@@ -169,6 +176,7 @@ FrameResult ResidentSession::run_parts(const Input& input) {
     try {
         find_body_pairs(input);
     } catch (const OutOfMemory&) {} // batches need less memory
+    queued_.reset();
     auto result = run_in_batches(pipeline_, input.host, input.body_pairs, batches_);
     stale_ = false;
     return result;
@@ -181,6 +189,75 @@ FrameResult ResidentSession::run_input(const Input& input) {
         batches_ = 2;
     }
     return run_parts(input);
+}
+
+/// The limits of all buffers but those of the answer.
+std::vector<Limit> ResidentSession::limits(const Input& input) const {
+    const auto& settings = pipeline_.settings;
+    if (settings[parameters::decision] == DecisionPrecision::exact && pipeline_.contacts)
+        throw InputError("setting decision=exact decides some pairs on the host, which enqueue() does not wait "
+                         "for; choose decision=recheck, or call run()");
+    auto limits = pipeline_.stages.walker->limits();
+    if (!limits)
+        throw InputError("this algorithm's schedule needs the host in every frame; choose tiled for enqueue(), "
+                         "or call run()");
+    if (!input.body_pairs) limits->push_back({STATUS_BODY_PAIRS, pipeline_.body_pairs->rows().capacity()});
+    return *std::move(limits);
+}
+
+/// Runs the frame once, so that every buffer exists and every kernel is chosen, and keeps what its commands use.
+void ResidentSession::prepare_queued(const Input& input) {
+    const auto answer = pipeline_.answers->take();
+    begin(input, *answer);
+    if (pipeline_.contacts) pipeline_.contacts->expect(pipeline_.status.counter(STATUS_PAIRS));
+    pipeline_.stages.walker->grow(pipeline_.status);
+    auto queued = std::make_unique<QueuedStage>(*pipeline_.bodies, pipeline_.shape, answer,
+                                                has_pairs(pipeline_.output), limits(input));
+    const auto memory = std::make_shared<std::pair<std::shared_ptr<const AnswerBuffers>, std::vector<Buffer>>>();
+    memory->first = answer;
+    pipeline_.device.hold_buffers(&memory->second);
+    try {
+        submit(input, *answer, [&] { queued->launch(pipeline_.status); });
+    } catch (...) {
+        pipeline_.device.hold_buffers(nullptr);
+        throw;
+    }
+    pipeline_.device.hold_buffers(nullptr);
+    queued_ = std::move(queued);
+    queued_memory_ = memory;
+}
+
+QueuedFrame ResidentSession::do_enqueue(const FrameInput* host, const DeviceFrameInput* device,
+                                        std::optional<std::span<const BodyPair>> body_pairs) {
+    if (device != nullptr && !pack_)
+        pack_ = std::make_unique<PackStage>(*pipeline_.bodies, pipeline_.shape);
+    const Input input{.host = host, .device = device, .body_pairs = body_pairs};
+    if (!queued_ || stale_) {
+        if (pipeline_.device.is_captured()) refuse_capture();
+        prepare_queued(input);
+    } else {
+        submit(input, *queued_->answer(), [&] { queued_->launch(pipeline_.status); });
+    }
+    auto frame = queued_->frame();
+    frame.memory = queued_memory_;
+    return frame;
+}
+
+std::optional<FrameResult> ResidentSession::do_collect() {
+    if (!queued_) return Session::do_collect();
+    const auto words = queued_->read();
+    const auto number = [&](std::size_t word) { return words[word] | std::uint64_t{words[word + 1]} << 32; };
+    if (number(QUEUED_FLAG) != 0) return std::nullopt;
+    FrameResult result;
+    result.count = number(QUEUED_PAIRS);
+    result.contacts = number(QUEUED_CONTACTS);
+    result.body_pairs = number(QUEUED_BODY_PAIRS);
+    result.batches = 1;
+    if (pipeline_.output == Output::digest)
+        result.summed = Digest{result.count, number(QUEUED_DIGEST_A), number(QUEUED_DIGEST_B)};
+    if (has_pairs(pipeline_.output))
+        result.parts.push_back(device_part(pipeline_.tools, queued_->answer(), result.count, result.contacts));
+    return result;
 }
 
 } // namespace tandem

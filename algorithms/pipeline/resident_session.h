@@ -61,7 +61,13 @@ private:
     }
     FrameResult do_run_device_input(const DeviceFrameInput& input,
                                     std::optional<std::span<const BodyPair>> body_pairs) override;
-    void do_count_work(bool on) override { pipeline_.count(on); }
+    QueuedFrame do_enqueue(const FrameInput* host, const DeviceFrameInput* device,
+                           std::optional<std::span<const BodyPair>> body_pairs) override;
+    std::optional<FrameResult> do_collect() override;
+    void do_count_work(bool on) override {
+        pipeline_.count(on);
+        queued_.reset();
+    }
     std::span<Device* const> do_devices() const override { return devices_; }
     const Settings& do_settings() const override { return pipeline_.settings; }
     const Bodies* do_bodies() const override { return pipeline_.bodies.get(); }
@@ -72,7 +78,11 @@ private:
     void reject_flaws(const Input& input);
     void launch(const AnswerBuffers& answer);
     void walk(const AnswerBuffers& answer);
+    template<class End>
+    void submit(const Input& input, const AnswerBuffers& answer, const End& end);
     void begin(const Input& input, const AnswerBuffers& answer);
+    std::vector<Limit> limits(const Input& input) const;
+    void prepare_queued(const Input& input);
     bool grow(AnswerBuffers& answer);
     FrameResult run_whole(const Input& input);
     FrameResult run_parts(const Input& input);
@@ -87,6 +97,10 @@ private:
     bool stale_ = true;               ///< poses and bounds on the device may be out of date
     bool is_uploaded_ = false;        ///< upload_vertices() has uploaded the next frame's vertices
     bool has_received_ = false;       ///< set_received() has bodies
+
+    /// Of enqueue(); null before the first call, and after a frame that has grown buffers.
+    std::unique_ptr<QueuedStage> queued_;
+    std::shared_ptr<const void> queued_memory_; ///< QueuedFrame::memory
 };
 
 } // namespace tandem

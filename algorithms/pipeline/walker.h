@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/answer/answers.h"
+#include "algorithms/answer/queued_stage.h"
 #include "algorithms/answer/status.h"
 #include "algorithms/bodies/body_pair.h"
 #include "algorithms/kernels/counter.h"
 
 #include <map>
+#include <optional>
 
 namespace tandem {
 
@@ -63,6 +64,9 @@ public:
     /// Grows the walker's own buffers if the last walk overflowed them. Returns true if the walk must run
     /// again. Throws OutOfMemory.
     bool grow(const Status& status) { return do_grow(status); }
+    /// The limits of the walker's own buffers, for a frame that the host does not wait for; nullopt if the host
+    /// takes part in the walk.
+    std::optional<std::vector<Limit>> limits() const { return do_limits(); }
     /// Clears state that is carried from walk to walk; a walker without state has none.
     void reset() { do_reset(); }
     /// Adds the counts of a counting walk, by the names of Traversal::counters().
@@ -74,6 +78,7 @@ private:
     virtual void do_compile(const WalkBuild& build) = 0;
     virtual void do_launch(const WalkTask& task) = 0;
     virtual bool do_grow(const Status& status) = 0;
+    virtual std::optional<std::vector<Limit>> do_limits() const { return std::nullopt; }
     virtual void do_reset() {}
     virtual void do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const = 0;
 };

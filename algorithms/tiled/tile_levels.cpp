@@ -14,6 +14,11 @@ namespace {
 
 constexpr std::size_t row_bytes = 4 * TILE_PAIR_WORDS;
 
+/// Body pairs of `begins` times `begins` pairs of tiles each: turns.clh counts them in a word.
+std::uint32_t most_start_pairs(std::uint64_t begins) {
+    return static_cast<std::uint32_t>(0xffffffffu / (begins * begins));
+}
+
 } // namespace
 
 TileLevels::TileLevels(TileTrees& trees, const BuildContext& context, LaunchShape shape)
@@ -77,6 +82,15 @@ bool TileLevels::grow(const Status& status) {
     return again;
 }
 
+std::vector<Limit> TileLevels::limits() const {
+    const std::uint64_t begins = trees_.begins(trees_.walked_levels() - 1);
+    std::vector<Limit> limits;
+    if (begins > 1) limits.push_back({STATUS_BODY_PAIRS, most_start_pairs(begins)});
+    for (std::uint32_t level = 0; level + 1 < trees_.walked_levels(); ++level)
+        limits.push_back({STATUS_TILE_PAIRS + 2 * level, lists_[level].capacity()});
+    return limits;
+}
+
 void TileLevels::report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const {
     work[counters::bvtt_nodes.name] += status.counter(STATUS_BVTT_NODES);
     work[counters::seeds.name] += status.counter(STATUS_SEEDS);
@@ -110,7 +124,7 @@ void TileLevels::launch_level(const WalkTask& task, std::uint32_t level) {
 
 void TileLevels::check_start_pairs(std::uint64_t body_pairs) const {
     const std::uint64_t begins = trees_.begins(trees_.walked_levels() - 1);
-    if (begins > 1 && body_pairs > 0xffffffffu / (begins * begins)) // turns.clh counts them in a word
+    if (begins > 1 && body_pairs > most_start_pairs(begins))
         throw InputError(fmt::format(
             "{} body pairs start with {} pairs of tiles each, and a frame numbers fewer than 2^32; "
             "lower most_seeds, or give each body pair once",

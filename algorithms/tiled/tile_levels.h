@@ -34,6 +34,8 @@ public:
     void expect(const Status& status);
     /// Grows the lists that the last walk overflowed. Returns true if it must run again. Throws OutOfMemory.
     bool grow(const Status& status);
+    /// As Walker::limits().
+    std::vector<Limit> limits() const;
     /// Adds the counts of a counting walk.
     void report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const;
 

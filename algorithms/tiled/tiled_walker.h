@@ -16,6 +16,7 @@ public:
 private:
     void do_compile(const WalkBuild& build) override;
     void do_launch(const WalkTask& task) override;
+    std::optional<std::vector<Limit>> do_limits() const override { return levels_.limits(); }
     bool do_grow(const Status& status) override;
     void do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const override;
 

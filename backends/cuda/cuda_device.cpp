@@ -62,6 +62,8 @@ private:
     std::uint64_t do_launch(Kernel::Impl& kernel, Grid grid, std::span<const Argument> arguments) override;
     void do_finish() override { queue_.finish(); }
     void do_follow(void* queue) override { queue_.follow(legacy_is_null(queue)); }
+    void do_precede(void* queue) override { queue_.precede(legacy_is_null(queue)); }
+    bool do_is_captured() override { return queue_.is_captured(); }
     bool do_begin_collecting() override { return queue_.begin_collecting(); }
     void do_end_collecting() override { queue_.end_collecting(); }
     void do_set_clocks(Clocks clocks) override { queue_.set_clocks(clocks); }
@@ -128,7 +130,6 @@ std::shared_ptr<Buffer::Impl> CudaDevice::do_adopt(void* native) {
     auto buffer = std::make_shared<CudaBuffer>();
     buffer->pointer = reinterpret_cast<DevicePointer>(native);
     buffer->owned = false;
-    buffer->frees = queue_.frees();
     return buffer;
 }
 

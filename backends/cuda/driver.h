@@ -84,6 +84,7 @@ enum FunctionAttribute : int { function_max_threads = 0, function_shared_bytes =
     ENTRY(cuFuncGetAttribute, (int*, int, Function))                                                         \
     ENTRY(cuStreamBeginCapture_v2, (Stream, int))                                                            \
     ENTRY(cuStreamEndCapture, (Stream, Graph*))                                                              \
+    ENTRY(cuStreamIsCapturing, (Stream, int*))                                                               \
     ENTRY(cuGraphInstantiateWithFlags, (GraphExec*, Graph, unsigned long long))                              \
     ENTRY(cuGraphLaunch, (GraphExec, Stream))                                                                \
     ENTRY(cuGraphExecDestroy, (GraphExec))                                                                   \

@@ -47,7 +47,7 @@ Queue::~Queue() {
     graphs_.drop();
     staging_.drop();
     clock_.reset();
-    if (followed_ != nullptr) driver().cuEventDestroy_v2(followed_);
+    if (order_ != nullptr) driver().cuEventDestroy_v2(order_);
     if (owned_) driver().cuStreamDestroy_v2(stream_);
 }
 
@@ -121,9 +121,9 @@ void Queue::prepare_upload(std::size_t bytes) {
     collects_ = false;
 }
 
-/// The default stream cannot be captured.
+/// The default stream cannot be captured, and a stream that an application captures not a second time.
 bool Queue::begin_collecting() {
-    in_one_ = collects_ = stream_ != nullptr;
+    in_one_ = collects_ = stream_ != nullptr && !is_captured();
     return in_one_;
 }
 
@@ -158,14 +158,27 @@ void Queue::finish() {
     if (timed_) clock_->collect();
 }
 
-void Queue::follow(Stream stream) {
-    if (stream == stream_) return;
+/// Later commands of stream `second` run after everything submitted so far to stream `first`.
+void Queue::put_in_order(Stream first, Stream second) {
+    if (first == second) return;
     const Scope scope(*this);
     constexpr unsigned untimed = 2; // CU_EVENT_DISABLE_TIMING
-    constexpr std::string_view what = "following another stream";
-    if (followed_ == nullptr) check(driver().cuEventCreate(&followed_, untimed), "cuEventCreate", what);
-    check(driver().cuEventRecord(followed_, stream), "cuEventRecord", what);
-    check(driver().cuStreamWaitEvent(stream_, followed_, 0), "cuStreamWaitEvent", what);
+    constexpr std::string_view what = "ordering two streams";
+    if (order_ == nullptr) check(driver().cuEventCreate(&order_, untimed), "cuEventCreate", what);
+    check(driver().cuEventRecord(order_, first), "cuEventRecord", what);
+    check(driver().cuStreamWaitEvent(second, order_, 0), "cuStreamWaitEvent", what);
+}
+
+void Queue::follow(Stream stream) { put_in_order(stream, stream_); }
+
+void Queue::precede(Stream stream) { put_in_order(stream_, stream); }
+
+bool Queue::is_captured() const {
+    if (stream_ == nullptr) return false;
+    const Scope scope(*this);
+    int status = 0;
+    check(driver().cuStreamIsCapturing(stream_, &status), "cuStreamIsCapturing", "starting a frame");
+    return status != 0;
 }
 
 void Queue::set_clocks(Clocks clocks) {

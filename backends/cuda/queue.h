@@ -81,6 +81,10 @@ public:
     void finish();
     /// Later commands run after everything submitted so far to `stream`.
     void follow(Stream stream);
+    /// What is submitted to `stream` later runs after everything submitted so far here.
+    void precede(Stream stream);
+    /// As Device::is_captured(). The default stream cannot be captured.
+    bool is_captured() const;
     /// Switches the timing of commands on or off.
     void set_clocks(Clocks clocks);
     /// As Device::do_interval().
@@ -88,6 +92,7 @@ public:
 
 private:
     const Driver& driver() const { return libraries_.driver; }
+    void put_in_order(Stream first, Stream second);
     [[noreturn]] void fail(Result result, std::string_view call, std::string_view what) const;
     template<class What>
     void wait(const What& what);
@@ -102,7 +107,7 @@ private:
     const Context context_;
     const bool owned_; ///< the stream is its own
     Stream stream_ = nullptr;
-    EventHandle followed_ = nullptr;      ///< in the last stream that was followed; null before
+    EventHandle order_ = nullptr;      ///< in the last stream that was followed; null before
     std::unique_ptr<CommandClock> clock_; ///< null until clocks are on for the first time
     bool timed_ = false;
     Staging staging_;

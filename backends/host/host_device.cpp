@@ -177,6 +177,7 @@ private:
     }
 
     void do_follow(void*) override {} // every call completes before it returns
+    void do_precede(void*) override {}
     void do_finish() override {}
     void do_set_clocks(Clocks) override {}
 

@@ -77,6 +77,9 @@ private:
     std::uint64_t do_launch(Kernel::Impl& kernel, Grid grid, std::span<const Argument> arguments) override;
     void do_finish() override { queue_.finish(); }
     void do_follow(void* queue) override { queue_.follow(static_cast<cl_command_queue>(queue)); }
+    void do_precede(void* queue) override {
+        if (queue != queue_.active()) queue_.finish();
+    }
     void do_set_clocks(Clocks clocks) override { queue_.set_clocks(clocks); }
     std::pair<std::int64_t, std::int64_t> do_interval(std::uint64_t ticket) override {
         return queue_.interval(ticket);

@@ -55,6 +55,7 @@ private:
     std::uint64_t do_launch(Kernel::Impl&, Grid, std::span<const Argument>) override { return 0; }
     void do_finish() override {}
     void do_follow(void*) override {}
+    void do_precede(void*) override {}
     void do_set_clocks(Clocks) override {}
     std::pair<std::int64_t, std::int64_t> do_interval(std::uint64_t) override { return {-1, -1}; }
 
