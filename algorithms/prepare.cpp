@@ -189,20 +189,21 @@ FrameResult Session::run_among(const FrameView& view, std::optional<std::span<co
                                      }));
 }
 
-QueuedFrame Session::enqueue_among(const FrameView& view, std::optional<std::span<const BodyPair>> body_pairs) {
+QueuedFrame Session::enqueue_among(const FrameView& view,
+                                   std::optional<std::span<const BodyPair>> body_pairs) {
     check_call(view, body_pairs);
     const bool is_captured = devices().size() == 1 && devices().front()->is_captured();
     if (is_captured && (view.on_host() || body_pairs))
-        throw InputError("enqueue() in a capture got a frame or body pairs in the host's memory, which the graph "
-                         "would not read again; give a DeviceFrame alone");
+        throw InputError(
+            "enqueue() in a capture got a frame or body pairs in the host's memory, which the graph "
+            "would not read again; give a DeviceFrame alone");
     if (is_captured && !is_placed_) refuse_capture();
-    auto frame = view.on_host() ? with_host_input(*view.on_host(),
-                                                  [&](const FrameInput& input) {
-                                                      return do_enqueue(&input, nullptr, body_pairs);
-                                                  })
-                                : with_device_input(*view.on_device(), [&](const DeviceFrameInput& input) {
-                                      return do_enqueue(nullptr, &input, body_pairs);
-                                  });
+    auto frame =
+        view.on_host() ? with_host_input(
+            *view.on_host(), [&](const FrameInput& input) { return do_enqueue(&input, nullptr, body_pairs); })
+                       : with_device_input(*view.on_device(), [&](const DeviceFrameInput& input) {
+                             return do_enqueue(nullptr, &input, body_pairs);
+                         });
     std::copy_n(origin_.data(), 3, frame.origin.begin());
     is_placed_ = true;
     return frame;
@@ -231,8 +232,9 @@ void Traversal::do_fit(Settings&, const DeviceInfo&, const Scene*) const {}
 std::vector<KernelCost> Traversal::do_costs(const Scene&, const Settings&) const { return {}; }
 
 void Session::refuse_capture() {
-    throw InputError("enqueue() in a capture has memory to allocate and kernels to compile; enqueue a frame before "
-                     "the capture, and again after a run() that has grown buffers");
+    throw InputError(
+        "enqueue() in a capture has memory to allocate and kernels to compile; enqueue a frame before "
+        "the capture, and again after a run() that has grown buffers");
 }
 
 QueuedFrame Session::do_enqueue(const FrameInput*, const DeviceFrameInput*,

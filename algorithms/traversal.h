@@ -56,21 +56,21 @@ public:
     }
     /// Enqueues the commands of a frame without waiting for them. Buffers keep their capacities, those of the
     /// settings or those to which earlier run() have grown them; a frame that exceeds them is flagged
-    /// (QueuedFrame::counts), and run() of the same frame finds the whole answer. So are frames in device memory
-    /// with rows out of range. A later frame overwrites the answer.
-    /// The first call, and the first after a run() that has grown buffers, prepares: it allocates, may wait, and
-    /// throws what run() throws for rows out of range. On CUDA later calls with a frame in device memory may be
-    /// captured in the caller's graph, which replays with what the same arrays then contain. Throws InputError
-    /// as run(), and where the host takes part in a frame: several devices, residency=published,
-    /// decision=exact, or a walk that needs it; and for a captured frame in the host's memory.
+    /// (QueuedFrame::counts), and run() of the same frame finds the whole answer. So are frames in device
+    /// memory with rows out of range. A later frame overwrites the answer. The first call, and the first
+    /// after a run() that has grown buffers, prepares: it allocates, may wait, and throws what run() throws
+    /// for rows out of range. On CUDA later calls with a frame in device memory may be captured in the
+    /// caller's graph, which replays with what the same arrays then contain. Throws InputError as run(), and
+    /// where the host takes part in a frame: several devices, residency=published, decision=exact, or a walk
+    /// that needs it; and for a captured frame in the host's memory.
     QueuedFrame enqueue(const FrameView& frame) { return enqueue_among(frame, std::nullopt); }
     /// The same for these body pairs, as with run().
     QueuedFrame enqueue(const FrameView& frame, std::span<const BodyPair> body_pairs) {
         return enqueue_among(frame, body_pairs);
     }
     /// Waits, and returns the answer of the last frame enqueued, of which the counts of pairs, contacts and
-    /// body pairs are set, and the digest with output=digest; nullopt if it is flagged. Throws InputError if none was enqueued since a run() that
-    /// has grown buffers.
+    /// body pairs are set, and the digest with output=digest; nullopt if it is flagged. Throws InputError if
+    /// none was enqueued since a run() that has grown buffers.
     std::optional<FrameResult> collect() {
         auto result = do_collect();
         return result ? std::optional(finished(*std::move(result))) : std::nullopt;

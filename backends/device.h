@@ -81,8 +81,8 @@ public:
     /// Later commands run after everything submitted so far to `queue`, a vendor's handle in this device's
     /// context. On OpenCL the host waits for it.
     void follow(void* queue) { do_follow(queue); }
-    /// What is submitted to `queue` later runs after everything submitted so far here. On OpenCL the host waits
-    /// for it.
+    /// What is submitted to `queue` later runs after everything submitted so far here. On OpenCL the host
+    /// waits for it.
     void precede(void* queue) { do_precede(queue); }
     /// Whether commands are now captured into a graph of the application, as cudaStreamBeginCapture() on the
     /// queue, or on one that it follows, begins. Such commands must not wait.

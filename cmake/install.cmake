@@ -21,7 +21,7 @@ endforeach()
 set(public_headers
   backends/device.h backends/handles.h backends/trace.h backends/registry.h backends/backend_report.h backends/driver_report.h backends/host/host_device.h backends/opencl/opencl_device.h
   backends/cuda/cuda_device.h backends/ranks.h
-  algorithms/traversal.h algorithms/bodies/device_frame.h algorithms/bodies/body_pair.h algorithms/bodies/frame_input.h algorithms/kernels/counter.h algorithms/bodies/cost.h algorithms/answer/frame_result.h
+  algorithms/traversal.h algorithms/bodies/device_frame.h algorithms/bodies/body_pair.h algorithms/bodies/frame_input.h algorithms/kernels/counter.h algorithms/bodies/cost.h algorithms/answer/frame_result.h algorithms/answer/queued_frame.h algorithms/answer/queued.clh
   algorithms/parameters/parameter.h algorithms/parameters/choices.h algorithms/parameters/contact_rules.clh
   algorithms/parameters/table.h
   algorithms/bounds/geometry.h algorithms/bodies/range.h algorithms/bodies/check_input.h scenes/scene.h scenes/dynamics.h

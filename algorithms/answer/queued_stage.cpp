@@ -53,10 +53,8 @@ void QueuedStage::launch(const Status& status) const {
                                               .status = status.buffer()};
         device.launch(name_, {shape_.groups, shape_.group_size}, name);
     }
-    const kernels::queued::EndFrame end{.limits = limits_,
-                                        .limit_count = limit_count_,
-                                        .status = status.buffer(),
-                                        .counts = frame_.counts};
+    const kernels::queued::EndFrame end{
+        .limits = limits_, .limit_count = limit_count_, .status = status.buffer(), .counts = frame_.counts};
     device.launch(end_, {1, shape_.group_size}, end);
 }
 

@@ -19,8 +19,8 @@ class QueuedStage {
 public:
     /// `limits`: of the other buffers of the frame. `stores`: whether the frame stores pairs. Throws
     /// OutOfMemory.
-    QueuedStage(const Bodies& bodies, LaunchShape shape, std::shared_ptr<const AnswerBuffers> answer, bool stores,
-                std::vector<Limit> limits);
+    QueuedStage(const Bodies& bodies, LaunchShape shape, std::shared_ptr<const AnswerBuffers> answer,
+                bool stores, std::vector<Limit> limits);
 
     /// Enqueues the end of a frame.
     void launch(const Status& status) const;

@@ -195,17 +195,20 @@ FrameResult ResidentSession::run_input(const Input& input) {
 std::vector<Limit> ResidentSession::limits(const Input& input) const {
     const auto& settings = pipeline_.settings;
     if (settings[parameters::decision] == DecisionPrecision::exact && pipeline_.contacts)
-        throw InputError("setting decision=exact decides some pairs on the host, which enqueue() does not wait "
-                         "for; choose decision=recheck, or call run()");
+        throw InputError(
+            "setting decision=exact decides some pairs on the host, which enqueue() does not wait "
+            "for; choose decision=recheck, or call run()");
     auto limits = pipeline_.stages.walker->limits();
     if (!limits)
-        throw InputError("this algorithm's schedule needs the host in every frame; choose tiled for enqueue(), "
-                         "or call run()");
+        throw InputError(
+            "this algorithm's schedule needs the host in every frame; choose tiled for enqueue(), "
+            "or call run()");
     if (!input.body_pairs) limits->push_back({STATUS_BODY_PAIRS, pipeline_.body_pairs->rows().capacity()});
     return *std::move(limits);
 }
 
-/// Runs the frame once, so that every buffer exists and every kernel is chosen, and keeps what its commands use.
+/// Runs the frame once, so that every buffer exists and every kernel is chosen, and keeps what its commands
+/// use.
 void ResidentSession::prepare_queued(const Input& input) {
     const auto answer = pipeline_.answers->take();
     begin(input, *answer);
@@ -213,7 +216,8 @@ void ResidentSession::prepare_queued(const Input& input) {
     pipeline_.stages.walker->grow(pipeline_.status);
     auto queued = std::make_unique<QueuedStage>(*pipeline_.bodies, pipeline_.shape, answer,
                                                 has_pairs(pipeline_.output), limits(input));
-    const auto memory = std::make_shared<std::pair<std::shared_ptr<const AnswerBuffers>, std::vector<Buffer>>>();
+    const auto memory =
+        std::make_shared<std::pair<std::shared_ptr<const AnswerBuffers>, std::vector<Buffer>>>();
     memory->first = answer;
     pipeline_.device.hold_buffers(&memory->second);
     try {
@@ -229,8 +233,7 @@ void ResidentSession::prepare_queued(const Input& input) {
 
 QueuedFrame ResidentSession::do_enqueue(const FrameInput* host, const DeviceFrameInput* device,
                                         std::optional<std::span<const BodyPair>> body_pairs) {
-    if (device != nullptr && !pack_)
-        pack_ = std::make_unique<PackStage>(*pipeline_.bodies, pipeline_.shape);
+    if (device != nullptr && !pack_) pack_ = std::make_unique<PackStage>(*pipeline_.bodies, pipeline_.shape);
     const Input input{.host = host, .device = device, .body_pairs = body_pairs};
     if (!queued_ || stale_) {
         if (pipeline_.device.is_captured()) refuse_capture();
@@ -256,7 +259,8 @@ std::optional<FrameResult> ResidentSession::do_collect() {
     if (pipeline_.output == Output::digest)
         result.summed = Digest{result.count, number(QUEUED_DIGEST_A), number(QUEUED_DIGEST_B)};
     if (has_pairs(pipeline_.output))
-        result.parts.push_back(device_part(pipeline_.tools, queued_->answer(), result.count, result.contacts));
+        result.parts.push_back(
+            device_part(pipeline_.tools, queued_->answer(), result.count, result.contacts));
     return result;
 }
 

@@ -64,8 +64,8 @@ public:
     /// Grows the walker's own buffers if the last walk overflowed them. Returns true if the walk must run
     /// again. Throws OutOfMemory.
     bool grow(const Status& status) { return do_grow(status); }
-    /// The limits of the walker's own buffers, for a frame that the host does not wait for; nullopt if the host
-    /// takes part in the walk.
+    /// The limits of the walker's own buffers, for a frame that the host does not wait for; nullopt if the
+    /// host takes part in the walk.
     std::optional<std::vector<Limit>> limits() const { return do_limits(); }
     /// Clears state that is carried from walk to walk; a walker without state has none.
     void reset() { do_reset(); }

@@ -107,7 +107,7 @@ private:
     const Context context_;
     const bool owned_; ///< the stream is its own
     Stream stream_ = nullptr;
-    EventHandle order_ = nullptr;      ///< in the last stream that was followed; null before
+    EventHandle order_ = nullptr;         ///< in the last stream that was followed; null before
     std::unique_ptr<CommandClock> clock_; ///< null until clocks are on for the first time
     bool timed_ = false;
     Staging staging_;

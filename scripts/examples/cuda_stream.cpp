@@ -4,43 +4,18 @@
 // thread's current context. Prints the number of pairs. Needs no toolkit, because it loads the entry points
 // of the driver itself. With the stub of the driver, which runs no kernels, it checks the streams of the
 // calls instead of the count.
+#include "driver_calls.h"
 #include "find_pairs.h"
 
 #include <tandem/backends/cuda/cuda_device.h>
 
+#include <cstddef>
 #include <cstdio>
-#include <dlfcn.h>
 #include <vector>
 
 namespace {
 
-using Handle = void*; ///< CUcontext, CUstream
-using Pointer = unsigned long long;
-
 constexpr std::size_t bytes = std::size_t{1} << 20;
-
-void* library() {
-    static auto* const opened = dlopen("libcuda.so.1", RTLD_NOW);
-    return opened;
-}
-
-template<class Function>
-Function* entry(const char* name) {
-    return reinterpret_cast<Function*>(dlsym(library(), name));
-}
-
-template<class... Arguments>
-bool call(const char* name, Arguments... arguments) {
-    auto* const function = entry<int(Arguments...)>(name);
-    const int code = function != nullptr ? function(arguments...) : -1;
-    if (code != 0) std::fprintf(stderr, "cuda_stream: %s failed with %d\n", name, code);
-    return code == 0;
-}
-
-bool check(bool good, const char* what) {
-    if (!good) std::fprintf(stderr, "cuda_stream: %s\n", what);
-    return good;
-}
 
 bool is_current(Handle context) {
     Handle current = nullptr;
@@ -72,7 +47,7 @@ bool run(Handle context, Handle stream, Handle current) {
     good &= check(follows(*device, context, stream), "tandem does not follow the application's commands");
     const auto count = candidate_pairs(*device);
     good &= check(is_current(current), "a session changed the current context");
-    const bool stub = entry<void()>("stub_all_calls") != nullptr;
+    const bool stub = is_stub();
     good &= check(count > 0 || stub, "no pairs");
     std::printf("%llu candidate pairs%s\n", static_cast<unsigned long long>(count),
                 stub ? " (no kernels ran)" : "");
@@ -88,18 +63,6 @@ bool arrived(Handle context, Handle stream) {
     const auto on_stream = entry<unsigned long(Handle, Handle)>("stub_calls")(stream, context);
     std::printf("%lu calls on a stream, %lu of them on the application's\n", all(), on_stream);
     return on_stream > 50 && on_stream == all();
-}
-
-/// Makes a context that is not current. The driver makes a new context current, so that it is popped.
-bool create(Handle& context) {
-    Handle popped = nullptr;
-    return call("cuCtxCreate_v2", &context, 0u, 0) && call("cuCtxPopCurrent_v2", &popped);
-}
-
-/// Makes a stream of a context.
-bool create_stream(Handle context, Handle& stream) {
-    return call("cuCtxSetCurrent", context) && call("cuStreamCreate", &stream, 1u)
-           && call("cuCtxSetCurrent", Handle{});
 }
 
 } // namespace

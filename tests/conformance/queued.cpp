@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Frames that the host does not wait for (Session::enqueue): the answers of run(), a flag where these do not fit,
-// and nothing written past the end then.
+// Frames that the host does not wait for (Session::enqueue): the answers of run(), a flag where these do not
+// fit, and nothing written past the end then.
 #include "tests/support/frames_there.h"
 #include "tests/support/message_of.h"
 #include "tests/support/on_device.h"
@@ -46,9 +46,10 @@ TEST_P(Queued, FramesHaveTheAnswersOfRun) {
     const auto scene = crowd(3, 12, 1.5);
     for (const auto* traversal : algorithms()) {
         if (needs_host(*traversal)) continue;
-        for (const auto& given :
-             {SettingTexts{{"k", "18"}}, {{"k", "8"}, {"precision", "double"}, {"decision", "recheck"}},
-              {{"output", "digest"}}, {{"order", "canonical"}, {"contact_rule", "none"}}}) {
+        for (const auto& given : {SettingTexts{{"k", "18"}},
+                                  {{"k", "8"}, {"precision", "double"}, {"decision", "recheck"}},
+                                  {{"output", "digest"}},
+                                  {{"order", "canonical"}, {"contact_rule", "none"}}}) {
             SCOPED_TRACE(fmt::format("{}{}", traversal->name(), text(given)));
             const auto right_session = prepare(traversal->name(), scene, given);
             const auto session = prepare(traversal->name(), scene, given);
@@ -131,7 +132,8 @@ TEST_P(Queued, FlawedFramesAreFlaggedAndTheNextOneIsRight) {
     auto flawed = rows;
     flawed.poses[7 * 3] = std::nan("");
     EXPECT_THAT(message_of([&] { session->enqueue(flawed.uploaded_to(on)); }),
-                HasSubstr("poses: row 3 is not finite")) << "the first call waits";
+                HasSubstr("poses: row 3 is not finite"))
+        << "the first call waits";
     const auto right = session->run(rows.host);
     session->enqueue(rows.uploaded_to(on));
     const auto frame = session->enqueue(flawed.uploaded_to(on));
@@ -148,13 +150,15 @@ TEST_P(Queued, FramesThatNeedTheHostAreRefusedInOneLine) {
         return message_of([&] { session->enqueue(scene.frame(0)); });
     };
     EXPECT_THAT(refusal("gproximity", {}), HasSubstr("needs the host in every frame; choose tiled"));
-    EXPECT_THAT(refusal("tiled", {{"decision", "exact"}}), HasSubstr("decision=exact decides some pairs on the host"));
+    EXPECT_THAT(refusal("tiled", {{"decision", "exact"}}),
+                HasSubstr("decision=exact decides some pairs on the host"));
     EXPECT_THAT(refusal("chunked", {{"residency", "published"}, {"broad", "sphere"}}),
                 HasSubstr("residency=published waits in every frame"));
     const std::array both{&device("host"), &device("opencl:0")};
     const auto& tiled = algorithm("tiled");
     const auto split = tiled.prepare(both, scene, resolved(tiled));
-    EXPECT_THAT(message_of([&] { split->enqueue(scene.frame(0)); }), HasSubstr("several devices share a frame"));
+    EXPECT_THAT(message_of([&] { split->enqueue(scene.frame(0)); }),
+                HasSubstr("several devices share a frame"));
     EXPECT_THAT(message_of([&] { split->collect(); }), HasSubstr("call enqueue() first"));
 }
 

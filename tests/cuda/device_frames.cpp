@@ -4,6 +4,7 @@
 // works on one.
 #include "tests/cuda/stubbed.h"
 #include "tests/support/cells.h"
+#include "tests/support/message_of.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
 #include "tests/unit/backends/device_support.h"
@@ -113,7 +114,50 @@ TEST_F(CudaFrames, WorkOnTheApplicationsStream) {
                 testing::HasSubstr("cuda:3: the driver has 1 devices, numbered from 0"));
 }
 
-TEST_F(CudaFrames, FollowOtherStreams) {
+/// The application captures a stream of its own, and the device's stream joins it.
+TEST_F(CudaFrames, AreCapturedIntoAGraphOfTheApplication) {
+    const auto session = prepare(*device);
+    const auto given = frame(*device, poses, vertices);
+    auto* const stream = stream_of(primary());
+    const auto captured = [&](const auto& work) {
+        make_current(primary());
+        EXPECT_EQ((entry<CUstream_st*, int>("cuStreamBeginCapture_v2")(stream, 0)), 0);
+        device->follow(stream);
+        const auto message = support::message_of(work);
+        device->precede(stream);
+        void* graph = nullptr;
+        EXPECT_EQ((entry<CUstream_st*, void**>("cuStreamEndCapture")(stream, &graph)), 0);
+        make_current(nullptr);
+        return std::pair(message, graph);
+    };
+    const auto enqueue = [&] { session->enqueue(given); };
+    EXPECT_THAT(captured(enqueue).first, testing::HasSubstr("enqueue a frame before the capture"));
+    for (int i = 0; i < 3; ++i) enqueue(); // prepares; its own graph is then known
+    const auto waits = entry_of_stub<unsigned long()>("stub_waits");
+    const auto launches = entry_of_stub<unsigned long()>("stub_graph_launches");
+    const auto waited = waits(), launched = launches();
+    enqueue();
+    EXPECT_EQ(launches(), launched + 1) << "one submission";
+    const auto [message, graph] = captured(enqueue);
+    EXPECT_EQ(message, "no error");
+    EXPECT_EQ(waits(), waited);
+    EXPECT_EQ(launches(), launched + 1) << "no graph within a graph";
+    void* executable = nullptr;
+    make_current(primary());
+    entry<void**, void*, unsigned long long>("cuGraphInstantiateWithFlags")(&executable, graph, 0);
+    const auto packed = launches_with(poses.data());
+    const auto commands = entry_of_stub<unsigned long()>("stub_commands_in_graphs");
+    const auto before = commands();
+    entry<void*, CUstream_st*>("cuGraphLaunch")(executable, stream);
+    EXPECT_GT(commands(), before) << "the graph has the frame's commands";
+    EXPECT_EQ(launches_with(poses.data()), packed);
+    entry<void*>("cuGraphExecDestroy")(executable);
+    make_current(nullptr);
+    EXPECT_THAT(captured([&] { session->enqueue(scene.frame(0)); }).first,
+                testing::HasSubstr("the host's memory, which the graph would not read again"));
+}
+
+TEST_F(CudaFrames, FollowOtherStreamsAndPrecedeThem) {
     const auto waits = entry_of_stub<unsigned long()>("stub_waits");
     const auto orderings = entry_of_stub<unsigned long(CUstream_st*, CUstream_st*)>("stub_orderings");
     auto* const own = static_cast<CUstream_st*>(device->queue());
@@ -124,6 +168,9 @@ TEST_F(CudaFrames, FollowOtherStreams) {
         const auto before = orderings(own, named);
         device->follow(stream);
         EXPECT_EQ(orderings(own, named), before + (stream != own));
+        const auto after = orderings(named, own);
+        device->precede(stream);
+        EXPECT_EQ(orderings(named, own), after + (stream != own));
         EXPECT_EQ(current(), nullptr);
     }
     EXPECT_EQ(waits(), waited) << "the host does not wait";

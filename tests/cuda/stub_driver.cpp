@@ -14,6 +14,7 @@
 #include <cstring>
 #include <functional>
 #include <map>
+#include <set>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -34,6 +35,7 @@ std::map<DevicePointer, std::size_t> sizes;
 
 constexpr Result invalid_context = 201;
 constexpr Result invalid_handle = 400;
+constexpr Result invalid_in_capture = 900;
 
 char primary;                            ///< the device's primary context
 thread_local std::vector<Context> stack; ///< a thread's contexts, the current one last
@@ -45,8 +47,9 @@ unsigned long waits = 0;
 
 using Work = std::vector<std::function<void()>>;
 bool capturing = false;
-Work captured;            ///< since the capture began
-unsigned long graphs = 0; ///< live graphs
+std::set<Stream> captured_streams; ///< the stream of the capture, and those that were ordered after it
+Work captured;                     ///< since the capture began
+unsigned long graphs = 0;          ///< live graphs
 unsigned long graph_launches = 0, commands_in_graphs = 0;
 unsigned long profiler_starts = 0, profiler_stops = 0;
 unsigned long event_records = 0;
@@ -257,6 +260,7 @@ Result cuStreamDestroy_v2(Stream stream) {
 }
 Result cuStreamSynchronize(Stream stream) {
     ++waits;
+    if (capturing) return invalid_in_capture;
     return launched && number("STUB_FAULT", 0) != 0 ? 700 : on(stream);
 }
 Result cuEventCreate(EventHandle* event, unsigned) {
@@ -270,6 +274,7 @@ Result cuEventRecord(EventHandle event, Stream stream) {
 }
 Result cuStreamWaitEvent(Stream stream, EventHandle event, unsigned) {
     ++orderings[{stream, recorded_in.at(event)}];
+    if (captured_streams.contains(recorded_in.at(event))) captured_streams.insert(stream);
     return on(stream);
 }
 Result cuEventElapsedTime(float* ms, EventHandle, EventHandle) {
@@ -278,11 +283,17 @@ Result cuEventElapsedTime(float* ms, EventHandle, EventHandle) {
 }
 Result cuStreamBeginCapture_v2(Stream stream, int) {
     capturing = true;
+    captured_streams = {stream};
     return on(stream);
 }
 Result cuStreamEndCapture(Stream stream, Graph* graph) {
     capturing = false;
+    captured_streams.clear();
     *graph = reinterpret_cast<Graph>(new Work(std::exchange(captured, {})));
+    return on(stream);
+}
+Result cuStreamIsCapturing(Stream stream, int* status) {
+    *status = captured_streams.contains(stream) ? 1 : 0;
     return on(stream);
 }
 Result cuGraphInstantiateWithFlags(GraphExec* executable, Graph graph, unsigned long long) {

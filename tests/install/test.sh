@@ -91,8 +91,10 @@ same opencl "$work/consumer/opencl_queue"
 
 stubs=$build/tests/stubs
 LD_LIBRARY_PATH=$stubs/driver TANDEM_CUPTI= TANDEM_NVRTC=$stubs/nvrtc/libnvrtc.so "$work/consumer/cuda_stream"
+LD_LIBRARY_PATH=$stubs/driver TANDEM_CUPTI= TANDEM_NVRTC=$stubs/nvrtc/libnvrtc.so "$work/consumer/graph_capture" plates 3
 if "$work/prefix/bin/tandem" devices | grep '^cuda:0' >/dev/null; then
   same cuda "$work/consumer/cuda_stream"
+  "$work/consumer/graph_capture"
 else
   echo "cuda: no driver, only its stub was tested"
 fi
