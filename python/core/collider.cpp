@@ -240,6 +240,44 @@ CollideRun Collider::run(const Input& input) {
     });
 }
 
+std::pair<QueuedFrame, std::uint64_t> Collider::enqueue(const Input& input, std::optional<void*> stream) {
+    const auto own = lock();
+    check(input);
+    if (world_pairs_)
+        throw InputError(
+            "enqueue() cannot wait for the host, which finds the body pairs of several worlds; call "
+            "run()");
+    auto& device = *devices_.front();
+    return with_signals([&] {
+        if (stream) device.follow(*stream);
+        const auto enqueued = [&](const auto& frames) {
+            if (!session_) choose_for(frames, seconds_of_choosing);
+            ++frames_;
+            const auto view = FrameView(frames).checked();
+            return input.body_pairs ? session_->enqueue(view, *input.body_pairs) : session_->enqueue(view);
+        };
+        auto frame = input.on_device ? enqueued(device_frames(input)) : enqueued(host_frames(input));
+        const auto caller = stream || !input.on_device ? stream : device_input_->followed();
+        if (!caller && device.is_captured())
+            throw InputError("enqueue() in a capture does not know the stream of its arrays; give stream=");
+        if (caller) device.precede(*caller);
+        return std::pair(std::move(frame), frames_);
+    });
+}
+
+std::optional<CollideRun> Collider::collect(std::uint64_t number) {
+    const auto own = lock();
+    if (number != frames_ || !session_)
+        throw InputError(
+            "collect() needs the last frame, and a later one has overwritten this one; collect each "
+            "frame before the next");
+    return with_signals([&]() -> std::optional<CollideRun> {
+        auto result = session_->collect();
+        if (!result) return std::nullopt;
+        return CollideRun{*std::move(result), 0, {}, frames_};
+    });
+}
+
 /// Keeps a session of the fastest candidate. Returns all timed ones, the fastest first. Throws InputError
 /// with the first error when all fail.
 template<class Frames>

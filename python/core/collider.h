@@ -55,6 +55,12 @@ public:
     /// Finds the pairs of a frame, with motion=linear up to its successor. Throws InputError, DeviceError
     /// also in a forked process, or what the handler of a signal raises (signals.h).
     CollideRun run(const Input& input);
+    /// Enqueues a frame without waiting for it, in the order of `stream`, or of the stream of its arrays.
+    /// Returns its number, too. Throws as run(), and InputError where the host takes part in frames
+    /// (Session::enqueue).
+    std::pair<QueuedFrame, std::uint64_t> enqueue(const Input& input, std::optional<void*> stream);
+    /// Session::collect() of frame `number`. Throws InputError if a later frame has overwritten it.
+    std::optional<CollideRun> collect(std::uint64_t number);
     /// Algorithm auto: times the candidates on that frame and selects the fastest for later runs. Throws
     /// InputError for another algorithm.
     std::vector<Trial> tune(const Input& input, double seconds);

@@ -3,6 +3,7 @@
 #include "python/core/answer.h"
 #include "python/core/collider.h"
 #include "python/core/input.h"
+#include "python/core/queued.h"
 
 #include <fmt/format.h>
 #include <nanobind/stl/map.h>
@@ -80,6 +81,19 @@ std::unique_ptr<Answer> run_arrays(const std::shared_ptr<Collider>& collider, nb
     return run(collider, *input);
 }
 
+std::unique_ptr<Queued> enqueue_arrays(const std::shared_ptr<Collider>& collider, nb::handle poses,
+                                       nb::handle vertices, nb::handle next_poses, nb::handle next_vertices,
+                                       const std::optional<BodyPairNumbers>& body_pairs,
+                                       std::optional<std::uintptr_t> stream) {
+    auto input = input_of(*collider, {poses, vertices}, {next_poses, next_vertices});
+    if (!input) return nullptr;
+    if (body_pairs) input->body_pairs = body_pairs_of(*body_pairs);
+    const nb::gil_scoped_release released;
+    auto [frame, number] =
+        collider->enqueue(*input, stream ? std::optional(reinterpret_cast<void*>(*stream)) : std::nullopt);
+    return std::make_unique<Queued>(collider, std::move(frame), number);
+}
+
 /// (numbers of bodies, a row of their poses each or None, {body: vertices} or None).
 using ChangeTuple = std::tuple<std::vector<std::uint32_t>, nb::object, nb::object>;
 
@@ -136,6 +150,15 @@ void bind_collider(nb::module_& module) {
                  "next_vertices: object | None, body_pairs: list[tuple[int, int]] | None) -> Answer | None"),
              "Runs a frame. vertices, next_vertices: a list with one array per deformable body, or "
              "{number: array}. Returns None for any other container.")
+        .def(
+            "enqueue", &enqueue_arrays, nb::arg("poses").none(), nb::arg("vertices").none(),
+            nb::arg("next_poses").none(), nb::arg("next_vertices").none(), nb::arg("body_pairs").none(),
+            nb::arg("stream").none(),
+            nb::sig(
+                "def enqueue(self, poses: object | None, vertices: object | None, next_poses: object | None, "
+                "next_vertices: object | None, body_pairs: list[tuple[int, int]] | None, "
+                "stream: int | None) -> Queued | None"),
+            "As run(), without a wait, in the order of a stream, given by its address.")
         .def("update", &update, nb::arg("frame"), nb::arg("next").none(), nb::arg("body_pairs").none(),
              "Runs the last frame with changes: numbers of bodies, an array of their poses or None, and "
              "{number: vertices} or None. next: changes from that frame to its successor.")

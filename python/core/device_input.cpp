@@ -63,6 +63,9 @@ DeviceRows DeviceInput::uploaded(const void* data, std::size_t bytes, Precision 
 
 DeviceRows DeviceInput::rows_of(const GivenRows& given, std::size_t columns, Upload& upload) {
     const auto bytes = given.rows * columns * (given.precision == Precision::fp64 ? 8 : 4);
+    if (!given.on_device && device_.is_captured())
+        throw InputError("enqueue() in a capture got an array in host memory, which the graph would not read "
+                         "again; give arrays of the device");
     if (!given.on_device) return uploaded(given.data, bytes, given.precision, upload);
     if (given.queue && given.queue != followed_) device_.follow(*given.queue);
     if (given.queue) followed_ = given.queue;

@@ -22,6 +22,8 @@ public:
     /// The frame of arrays that pass check_rows, and its successor if there is one. The next call overwrites
     /// them.
     DeviceFrameInput frames(const Input& input);
+    /// The stream of the last frame's arrays; none if their library orders the device's queue itself.
+    std::optional<void*> followed() const { return followed_; }
     /// Addresses from which kernels read the last frame: poses (0 for none), then the vertices of each
     /// deformable body. Those of its successor follow.
     std::vector<std::uintptr_t> addresses() const;

@@ -5,6 +5,7 @@
 #include "python/core/devices.h"
 #include "python/core/errors.h"
 #include "python/core/meshes.h"
+#include "python/core/queued.h"
 #include "python/core/scenes.h"
 
 NB_MODULE(_core, module) {
@@ -14,5 +15,6 @@ NB_MODULE(_core, module) {
     tandem::python::bind_meshes(module);
     tandem::python::bind_scenes(module);
     tandem::python::bind_answer(module);
+    tandem::python::bind_queued(module);
     tandem::python::bind_collider(module);
 }

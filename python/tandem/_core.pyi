@@ -151,6 +151,27 @@ class Answer:
 
     def pairs_on_device(self) -> Annotated[Any, dict(dtype='int32', shape=(None, 4))]: ...
 
+class Queued:
+    """A frame of Collider.enqueue; tandem.Queued wraps it."""
+
+    def collect(self) -> Answer | None:
+        """The answer, after a wait; None if it is not complete."""
+
+    @property
+    def pairs(self) -> object: ...
+
+    @property
+    def contact_ids(self) -> object: ...
+
+    @property
+    def contact_values(self) -> object: ...
+
+    @property
+    def counts(self) -> object: ...
+
+    @property
+    def origin(self) -> list[float]: ...
+
 def algorithms() -> list[str]:
     """Names of the algorithms that Collider accepts besides auto."""
 
@@ -169,6 +190,11 @@ class Collider:
     def run(self, poses: object | None, vertices: object | None, next_poses: object | None, next_vertices: object | None, body_pairs: list[tuple[int, int]] | None) -> Answer | None:
         """
         Runs a frame. vertices, next_vertices: a list with one array per deformable body, or {number: array}. Returns None for any other container.
+        """
+
+    def enqueue(self, poses: object | None, vertices: object | None, next_poses: object | None, next_vertices: object | None, body_pairs: list[tuple[int, int]] | None, stream: int | None) -> Queued | None:
+        """
+        As run(), without a wait, in the order of a stream, given by its address.
         """
 
     def update(self, frame: tuple[Sequence[int], object | None, object | None], next: tuple[Sequence[int], object | None, object | None] | None, body_pairs: Sequence[tuple[int, int]] | None) -> Answer:

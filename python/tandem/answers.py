@@ -118,3 +118,60 @@ class Answer:
 
     def __repr__(self) -> str:
         return f"<tandem.Answer: {self.count} pairs, {self.contact_count} contacts>"
+
+
+class Queued:
+    """A frame of Collider.enqueue(): memory of the device that its commands write, and that the next frame of
+    the collider overwrites. Read it in the stream of the frame, or after a wait. It is the same memory for every
+    frame until a run() grows the collider's buffers, and it lives as long as this object or an array over it:
+    keep it as long as a graph that captured the frame.
+
+    The arrays are objects with __dlpack__ (torch.from_dlpack, cupy.from_dlpack, with device host
+    numpy.from_dlpack); OpenCL's memory has none, and raises ValueError."""
+
+    __slots__ = ("_core", "_numbering", "__weakref__")
+
+    NO_ROOM, FLAWED, EXCEEDED = 1, 2, 4  #: bits of counts[0, 0]
+
+    def __init__(self, core: _core.Queued, numbering: Numbering | None = None) -> None:
+        self._core, self._numbering = core, numbering or Numbering()
+
+    @property
+    def counts(self) -> Any:
+        """(1, 6) int64: a flag (0: the answer is complete), candidate pairs, contacts and body pairs, and with
+        output="digest" the sums of the digest. Bits of the flag: NO_ROOM, a buffer is too small, and rows beyond
+        it are missing; FLAWED, poses or vertices on the device are out of range, such as not a number; EXCEEDED,
+        an error of tandem. run() of the same frame then finds the whole answer, or raises what is wrong."""
+        return self._core.counts
+
+    @property
+    def pairs(self) -> Any:
+        """(capacity, 4) int32, of which counts[0, 1] rows are used: body a, tetrahedron a, body b, tetrahedron b,
+        in any order, or sorted with order="canonical". No rows with output="count" or "digest"."""
+        return self._core.pairs
+
+    @property
+    def contact_ids(self) -> Any:
+        """(capacity, 2) int32, of which counts[0, 2] rows are used: the row of the contact's pair in `pairs`,
+        and its feature. No rows without contacts."""
+        return self._core.contact_ids
+
+    @property
+    def contact_values(self) -> Any:
+        """(capacity, 8) float32, float64 with precision="double": point relative to `origin`, normal out of
+        body a, depth, and a column that is not used."""
+        return self._core.contact_values
+
+    @property
+    def origin(self) -> numpy.ndarray:
+        """(3,) float64: what to add to the points of contacts for world coordinates."""
+        return numpy.array(self._core.origin)
+
+    def collect(self) -> Answer | None:
+        """Waits for the frame, and returns its answer over the same memory: read it before the next frame. None
+        if the flag is set. Its `seconds` are 0. Raises ValueError if the collider has had a later frame."""
+        core = self._core.collect()
+        return None if core is None else Answer(core, self._numbering)
+
+    def __repr__(self) -> str:
+        return "<tandem.Queued>"

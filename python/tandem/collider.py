@@ -8,7 +8,7 @@ from typing import Any, Iterable, Mapping, NamedTuple, Sequence
 import numpy
 
 from . import _core
-from .answers import Answer, Contacts, Digest
+from .answers import Answer, Contacts, Digest, Queued
 from .arguments import (
     body_pairs_of,
     filters_of,
@@ -191,6 +191,36 @@ class Collider:
         return Answer(
             self._run(self._core.run, poses, vertices, next_poses, next_vertices, pairs), self._numbering
         )
+
+    def enqueue(
+        self,
+        poses: Any = None,
+        vertices: Any = None,
+        *,
+        next_poses: Any = None,
+        next_vertices: Any = None,
+        body_pairs: Iterable[Sequence[int]] | None = None,
+        stream: Any = None,
+    ) -> Queued:
+        """Enqueues a frame, and returns before the device has come to it. The arguments are those of run().
+
+        Its commands run in the order of `stream`: a CUDA stream as in Collider(stream=...); None: the stream on
+        which the library of the arrays works now, if it tells it. So work that is enqueued there later may read
+        the answer, and write the arrays again.
+
+        Buffers keep their sizes: those of settings pair_capacity, contact_capacity and body_pair_capacity, or
+        those to which an earlier run() has grown them. A frame that does not fit is flagged, as is one with
+        numbers on the device that are not finite (Queued.counts).
+
+        The first call, and the first after a run() that has grown buffers, prepares, which may wait. Later
+        calls whose arrays are all on the collider's GPU can be captured in a CUDA graph (torch.cuda.graph,
+        CuPy's Stream.begin_capture), which then reads the same arrays in every replay; the captured frame has
+        the grids for as much work as the frame before it. Raises ValueError where the host takes part in a
+        frame: several devices, `worlds`, decision="exact", gproximity, the paper's data path."""
+        pairs = self._pairs_to_walk(body_pairs)
+        address = None if stream is None else stream_address(stream)
+        core = self._run(self._core.enqueue, poses, vertices, next_poses, next_vertices, pairs, address)
+        return Queued(core, self._numbering)
 
     def update(
         self,

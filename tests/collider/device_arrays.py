@@ -326,6 +326,54 @@ class Arrays(ColliderCase):
             self.collider(stream=default).run(poses)
             self.assertEqual(poses.streams, [1], "DLPack's name of the default stream")
 
+    def test_enqueued_frames_are_in_the_order_of_the_arrays_stream(self):
+        stream, other = self.stream()[0], self.stream()[0]
+        collider, poses = self.collider(), ByInterface(numpy.array(POSES), stream=stream)
+
+        def ordered(run):
+            """How often `run` ordered the collider's stream after another one, and the other after it."""
+            own = collider._core.queue
+            before = [
+                DRIVER.stub_orderings(*pair)
+                for name in (stream, other)
+                for pair in ((own, name), (name, own))
+            ]
+            run()
+            after = [
+                DRIVER.stub_orderings(*pair)
+                for name in (stream, other)
+                for pair in ((own, name), (name, own))
+            ]
+            return [new - old for new, old in zip(after, before)]
+
+        self.assertEqual(ordered(lambda: collider.enqueue(poses)), [1, 1, 0, 0])
+        self.assertEqual(ordered(lambda: collider.enqueue(poses, stream=other)), [1, 0, 1, 1])
+        self.assertEqual(ordered(lambda: collider.enqueue(POSES)), [0, 0, 0, 0])
+
+    def test_a_captured_frame_needs_arrays_of_the_gpu(self):
+        stream, context = self.stream()
+        collider, array = self.collider(deformable=[1]), numpy.array(POSES)
+        poses, points = ByInterface(array, stream=stream), ByInterface(self.meshes[1][0], stream=stream)
+        collider.enqueue(poses, [points])
+        collider.enqueue(poses, [self.meshes[1][0]])
+
+        def captured(run):
+            graph = ctypes.c_void_p()
+            DRIVER.cuCtxSetCurrent(ctypes.c_void_p(context))
+            DRIVER.cuStreamBeginCapture_v2(ctypes.c_void_p(stream), 0)
+            try:
+                run()
+            finally:
+                code = DRIVER.cuStreamEndCapture(ctypes.c_void_p(stream), ctypes.byref(graph))
+                DRIVER.cuCtxSetCurrent(None)
+            self.assertEqual(code, 0)
+
+        captured(lambda: collider.enqueue(poses, [points]))
+        with self.assertRaisesRegex(ValueError, "in a capture got an array in host memory"):
+            captured(lambda: collider.enqueue(poses, [self.meshes[1][0]]))
+        with self.assertRaisesRegex(ValueError, "enqueue a frame before the capture"):
+            captured(lambda: self.collider().enqueue(poses))
+
     def test_refused_input(self):
         array = numpy.array(POSES)
         wide, odd = OnGpu(numpy.zeros((2, 14))), OnGpu(numpy.zeros(16))

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: MIT
+# test: cost=3 needs=TANDEM_BUILDS_PYTHON
+"""tandem.Collider.enqueue: the answers of run(), arrays over memory of the device, the flag of frames that do not
+fit, and refusals. Streams and captures: device_arrays.py, and with a GPU gpu_arrays.py."""
+
+import numpy
+
+from tests.collider.case import DEVICES, POSES, ColliderCase, tandem
+
+
+class Queued(ColliderCase):
+    def test_collected_answers_are_those_of_run(self):
+        for device in DEVICES:
+            collider, right = self.collider(device=device), self.collider(device=device).run(POSES)
+            for _ in range(3):
+                answer = collider.enqueue(POSES).collect()
+                self.assertEqual(answer.digest(), right.digest())
+                self.assertEqual(answer.contact_digest(), right.contact_digest())
+            self.assertTrue((answer.pairs() == right.pairs()).all())
+            self.assertTrue((answer.contacts().points == right.contacts().points).all())
+            given = collider.enqueue(POSES, body_pairs=[(1, 0)]).collect()
+            self.assertEqual((given.count, given.body_pairs), (right.count, 1))
+            self.assertEqual(
+                self.collider(device=device, output="digest").enqueue(POSES).collect().digest(),
+                right.digest(),
+            )
+
+    def test_arrays_have_the_answer_in_memory_of_the_device(self):
+        for precision, kind in (("float", numpy.float32), ("double", numpy.float64)):
+            collider = self.collider(device="host", precision=precision, order="canonical")
+            right = collider.run(POSES)
+            queued = collider.enqueue(POSES)
+            flag, pairs, contacts, body_pairs, *_ = numpy.from_dlpack(queued.counts)[0]
+            self.assertEqual((flag, pairs, contacts, body_pairs), (0, right.count, right.contact_count, 1))
+            rows = numpy.from_dlpack(queued.pairs)
+            self.assertGreaterEqual(len(rows), pairs)
+            self.assertTrue((rows[:pairs] == right.pairs()).all())
+            ids, values = numpy.from_dlpack(queued.contact_ids), numpy.from_dlpack(queued.contact_values)
+            self.assertEqual((ids.shape[1], values.shape[1], values.dtype), (2, 8, kind))
+            found = right.contacts()
+            self.assertTrue((rows[ids[:contacts, 0]] == found.pairs).all())
+            self.assertTrue((ids[:contacts, 1] == found.features).all())
+            self.assertTrue((values[:contacts, 6] == found.depths).all())
+            numpy.testing.assert_allclose(values[:contacts, :3] + queued.origin, found.points, atol=1e-6)
+        counts = self.collider(device="host", output="count").enqueue(POSES)
+        self.assertEqual(numpy.from_dlpack(counts.counts)[0, 1], right.count)
+        self.assertEqual(numpy.from_dlpack(counts.pairs).shape, (0, 4))
+        self.assertEqual(numpy.from_dlpack(counts.contact_ids).shape, (0, 2))
+
+    def test_memory_is_the_same_for_every_frame_and_outlives_the_collider(self):
+        collider = self.collider(device="host")
+        first = numpy.from_dlpack(collider.enqueue(POSES).pairs)
+        second = numpy.from_dlpack(collider.enqueue(POSES).pairs)
+        self.assertEqual(first.ctypes.data, second.ctypes.data)
+        right = collider.run(POSES)
+        del collider
+        self.assertEqual(set(map(tuple, first[: right.count])), set(map(tuple, right.pairs())))
+
+    def test_a_frame_that_does_not_fit_is_flagged(self):
+        for name in ("pair_capacity", "contact_capacity"):
+            collider = self.collider(device="host", **{name: 1})
+            queued = collider.enqueue(POSES)
+            flag, pairs, *_ = numpy.from_dlpack(queued.counts)[0]
+            self.assertEqual(flag, tandem.Queued.NO_ROOM)
+            self.assertGreater(pairs, 1)
+            self.assertIsNone(queued.collect())
+            right = collider.run(POSES)
+            self.assertEqual(collider.enqueue(POSES).collect().digest(), right.digest())
+            with self.assertRaisesRegex(ValueError, "a later one has overwritten this one"):
+                queued.collect()
+
+    def test_refusals_are_one_line(self):
+        for words, options in (
+            ("needs the host in every frame; choose tiled", {"algorithm": "gproximity"}),
+            ("decision=exact decides some pairs on the host", {"decision": "exact"}),
+            ("several devices share a frame", {"device": "host+opencl:0"}),
+            ("finds the body pairs of several worlds", {"worlds": 2}),
+        ):
+            poses = [POSES] * 2 if "worlds" in options else POSES
+            with self.assertRaisesRegex(ValueError, words):
+                self.collider(**options).enqueue(poses)
+        with self.assertRaisesRegex(ValueError, "no array library takes OpenCL's memory"):
+            self.collider(device="opencl:0").enqueue(POSES).counts
+        with self.assertRaisesRegex(ValueError, "1 rows for 2 bodies"):
+            self.collider().enqueue(POSES[:1])
+        with self.assertRaisesRegex(TypeError, "expected a CUDA stream or its address"):
+            self.collider().enqueue(POSES, stream="main")
