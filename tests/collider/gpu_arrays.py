@@ -67,6 +67,17 @@ class Cupy:
     def finish(self):
         self.module.cuda.Device().synchronize()
 
+    def captured(self, stream, work):
+        """`work` as a graph: a function that replays it in `stream`."""
+        with stream:
+            stream.begin_capture()
+            work()
+            graph = stream.end_capture()
+        return lambda: graph.launch(stream)
+
+    def written(self, target, values):
+        target[...] = values
+
 
 class Torch(Cupy):
     def __init__(self):
@@ -105,6 +116,15 @@ class Torch(Cupy):
 
     def finish(self):
         self.module.cuda.synchronize()
+
+    def captured(self, stream, work):
+        graph = self.module.cuda.CUDAGraph()
+        with self.module.cuda.graph(graph, stream=stream):
+            work()
+        return graph.replay
+
+    def written(self, target, values):
+        target.copy_(values)
 
 
 class Jax(Cupy):
@@ -284,6 +304,33 @@ class Arrays(unittest.TestCase):
             )
         by_default_stream = self.collider(self.pile, stream=0)
         self.expect_same(by_default_stream.run(values), expected)
+
+    def test_a_captured_frame_reads_its_arrays_again(self):
+        """1,000 replays with other poses in the same array, without a call of tandem."""
+        stream = ON.stream()
+        collider = self.collider(self.pile)
+        frames = [ON.array(self.pile.poses(frame)) for frame in range(self.pile.frame_count)]
+        expected = [collider.run(frame) for frame in frames]
+        with ON.on(stream):
+            poses = ON.empty_like(frames[0])
+            ON.written(poses, frames[0])
+            queued = collider.enqueue(poses, stream=stream)
+            self.expect_same(queued.collect(), expected[0])
+        ON.finish()
+        replay = ON.captured(stream, lambda: collider.enqueue(poses, stream=stream))
+        counts = ON.taken(queued.counts)
+        with ON.on(stream):
+            for step in range(1000):
+                frame = step % len(frames)
+                ON.written(poses, frames[frame])
+                replay()
+                if step % 100 < len(frames):
+                    stream.synchronize()
+                    flag, pairs, contacts, *_ = ON.host(counts)[0]
+                    right = expected[frame]
+                    self.assertEqual((flag, pairs, contacts), (0, right.count, right.contact_count))
+                    rows = ON.host(ON.taken(queued.pairs))[:pairs]
+                    self.assertEqual(set(map(tuple, rows)), set(map(tuple, right.pairs())))
 
     def test_pairs_stay_on_the_device(self):
         answer = self.rigid.run(ON.array(self.pile.poses(0)))
