@@ -51,6 +51,7 @@ std::uint64_t digest_of(const Scene& scene) {
     for (const auto& mesh : scene.meshes) add(digester, mesh);
     for (const auto& body : scene.bodies)
         digester.add(std::uint64_t{body.mesh} << 2 | (body.fixed ? 1u : 0u) | (body.deformable ? 2u : 0u));
+    if (scene.world_size != 0) digester.add(std::uint64_t{scene.world_size});
     if (has_filters(scene)) {
         for (const auto& body : scene.bodies) digester.add(std::uint64_t{body.groups} << 32 | body.meets);
         for (const auto& [a, b] : scene.never_meet) digester.add(std::uint64_t{a} << 32 | b);

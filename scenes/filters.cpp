@@ -10,6 +10,7 @@ bool may_meet(const Scene& scene, std::uint32_t a, std::uint32_t b) {
     const auto& one = scene.bodies[a];
     const auto& other = scene.bodies[b];
     if (one.fixed && other.fixed) return false;
+    if (world_of(scene, a) != world_of(scene, b)) return false;
     if (a != b && ((one.groups & other.meets) == 0 || (other.groups & one.meets) == 0)) return false;
     return !std::ranges::binary_search(scene.never_meet, std::array{std::min(a, b), std::max(a, b)});
 }
@@ -24,9 +25,10 @@ std::vector<std::uint32_t> skipped_in(const Scene& scene, const Frame& frame, st
 
 bool has_filters(const Scene& scene) {
     const Body usual;
-    return !scene.never_meet.empty() || std::ranges::any_of(scene.bodies, [&](const Body& body) {
-        return body.groups != usual.groups || body.meets != usual.meets;
-    });
+    return scene.world_size != 0 || !scene.never_meet.empty()
+           || std::ranges::any_of(scene.bodies, [&](const Body& body) {
+                  return body.groups != usual.groups || body.meets != usual.meets;
+              });
 }
 
 } // namespace tandem

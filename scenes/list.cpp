@@ -145,9 +145,9 @@ const std::string& text_parameter(std::span<const SceneParameter> parameters, st
 }
 
 SceneParameter refine_parameter() {
-    return {
-        "refine", "0",
-        fmt::format("levels of refinement, each replaces a tetrahedron by eight, 0..{}", most_refinement)};
+    return {"refine", "0",
+            fmt::format("levels of refinement, each replaces a tetrahedron by eight, 0..{}", most_refinement),
+            "0"};
 }
 
 std::uint64_t refine_value(std::span<const SceneParameter> parameters) {
@@ -157,7 +157,9 @@ std::uint64_t refine_value(std::span<const SceneParameter> parameters) {
 std::string key_of(std::string_view name, std::span<const SceneParameter> parameters) {
     std::string key(name);
     for (const auto& p : parameters) {
-        if (p.name == "refine" && p.value.find_first_not_of('0') == std::string::npos) continue;
+        if (!p.left_out.empty()
+            && p.value.substr(std::min(p.value.find_first_not_of('0'), p.value.size() - 1)) == p.left_out)
+            continue; // also with zeros before it
         key += fmt::format("{}{}={}", key.size() == name.size() ? ':' : ',', p.name, p.value);
     }
     return key;

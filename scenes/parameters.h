@@ -16,8 +16,7 @@ const std::string& text_parameter(std::span<const SceneParameter> parameters, st
 SceneParameter refine_parameter();
 std::uint64_t refine_value(std::span<const SceneParameter> parameters);
 
-/// "NAME:par=value,..." of a scene kind and its parameters. refine=0 is left out, so that keys equal those of
-/// records without this parameter.
+/// "NAME:par=value,..." of a scene kind and its parameters. See SceneParameter::left_out.
 std::string key_of(std::string_view name, std::span<const SceneParameter> parameters);
 
 // The kinds of scene, one word each, in the order of listings: scenes/kinds/WORD.cpp defines WORD_kind().

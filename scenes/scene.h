@@ -47,6 +47,9 @@ struct Scene {
     std::vector<Body> bodies; ///< in the order of Frame::poses
     /// Pairs of bodies a < b that never meet, and of a body a = b that never meets itself; ascending.
     std::vector<std::array<std::uint32_t, 2>> never_meet{};
+    /// Bodies of each world, which follow each other by their numbers: bodies of two worlds never meet. 0:
+    /// all bodies are of one world.
+    std::uint32_t world_size = 0;
     std::size_t frame_count = 1;              ///< number of frames
     std::function<Frame(std::size_t)> frame;  ///< frame(i) for i < frame_count; pure
     std::shared_ptr<const Dynamics> dynamics; ///< null: the motion is scripted, all frames are defined
@@ -66,11 +69,16 @@ inline std::uint32_t number_of(const Scene& scene, std::size_t body) {
     return scene.numbers.empty() ? static_cast<std::uint32_t>(body) : scene.numbers[body];
 }
 
-/// Whether the broad phase may pair two bodies, or a body with itself: not if both are fixed, nor for a pair
-/// of `never_meet`. Two bodies must each meet a group of the other.
+/// The world of a body; 0 in a scene of one world.
+inline std::uint32_t world_of(const Scene& scene, std::size_t body) {
+    return scene.world_size == 0 ? 0 : number_of(scene, body) / scene.world_size;
+}
+
+/// Whether the broad phase may pair two bodies, or a body with itself: not if both are fixed, nor of two
+/// worlds, nor for a pair of `never_meet`. Two bodies must each meet a group of the other.
 bool may_meet(const Scene& scene, std::uint32_t a, std::uint32_t b);
 
-/// Whether groups or `never_meet` keep any two bodies apart.
+/// Whether worlds, groups or `never_meet` keep any two bodies apart.
 bool has_filters(const Scene& scene);
 
 /// The tetrahedra of a body that take no part in a frame: those that it skips, and merged duplicates;
@@ -82,6 +90,9 @@ struct SceneParameter {
     std::string name, ///< in a scene's specification
         value,        ///< number or word, as text
         help;         ///< one line for listings
+    /// The value that keys leave out, so that they equal those of records without this parameter; empty:
+    /// none.
+    std::string left_out{};
 };
 
 /// A kind of scene that the project generates.

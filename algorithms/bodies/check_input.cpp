@@ -86,6 +86,9 @@ void check_scene(const Scene& scene, Precision precision) {
     }
     for (std::size_t mesh = 0; mesh < scene.meshes.size(); ++mesh)
         if (is_used[mesh]) check_mesh(scene.meshes[mesh], mesh, precision);
+    if (scene.world_size != 0 && scene.numbers.empty() && scene.bodies.size() % scene.world_size != 0)
+        throw InputError(fmt::format("Scene::world_size is {}, which does not divide {} bodies",
+                                     scene.world_size, scene.bodies.size()));
     if (!std::ranges::is_sorted(scene.never_meet)) throw InputError("Scene::never_meet must be ascending");
     for (const auto& [a, b] : scene.never_meet)
         if (a > b || b >= scene.bodies.size())

@@ -56,13 +56,28 @@ bool Kinds::have_more_pairs_than(std::uint64_t count) const {
     return false;
 }
 
-bool two_bodies_may_meet(const Scene& scene) {
+bool two_bodies_of_a_world_may_meet(const Scene& scene) {
     const Kinds kinds(scene);
     auto apart = scene.never_meet;
     apart.erase(std::unique(apart.begin(), apart.end()), apart.end());
     const auto dropped = std::ranges::count_if(
         apart, [&](const auto& pair) { return pair[0] != pair[1] && kinds.may_meet(pair[0], pair[1]); });
     return kinds.have_more_pairs_than(static_cast<std::uint64_t>(dropped));
+}
+
+bool two_bodies_may_meet(const Scene& scene) {
+    if (scene.world_size == 0) return two_bodies_of_a_world_may_meet(scene);
+    auto next = scene.never_meet.begin();
+    for (std::uint32_t first = 0; first < scene.bodies.size(); first += scene.world_size) {
+        const auto end = std::min<std::size_t>(scene.bodies.size(), first + std::size_t{scene.world_size});
+        Scene world;
+        world.bodies.assign(scene.bodies.begin() + first,
+                            scene.bodies.begin() + static_cast<std::ptrdiff_t>(end));
+        for (; next != scene.never_meet.end() && (*next)[0] < end; ++next)
+            if ((*next)[1] < end) world.never_meet.push_back({(*next)[0] - first, (*next)[1] - first});
+        if (two_bodies_of_a_world_may_meet(world)) return true;
+    }
+    return false;
 }
 
 } // namespace

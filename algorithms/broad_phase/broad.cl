@@ -15,6 +15,11 @@
 #define SELF 0
 #endif
 
+// 1: the pairs of tiles that have bodies of one world are listed; 0: all are numbered.
+#ifndef WORLDS
+#define WORLDS 0
+#endif
+
 // In roots and unions a volume is DIRECTIONS rows {lower, upper}.
 
 DEVICE RealPair slab_of(GLOBAL const real* volumes, GLOBAL const uint* order, uint position, uint axis) {
@@ -48,8 +53,22 @@ KERNEL void bound_tiles(GLOBAL const real* volumes, GLOBAL const uint* order, ui
     }
 }
 
+typedef struct {
+    uint row, column;
+} TilePair;
+
+// Pair of tiles number `index`. `list`: rows of two words, with WORLDS.
+DEVICE TilePair tile_pair_of(GLOBAL const uint* list, uint tiles, uint index) {
+    TilePair pair;
+    pair.row = WORLDS ? list[2u * index] : index / tiles;
+    pair.column = WORLDS ? list[2u * index + 1u] : index % tiles;
+    return pair;
+}
+
 // Whether the pairs of these tiles must be tested. Each pair of tiles is tested once, with row <= column.
-DEVICE int tiles_overlap(GLOBAL const RealPair* unions, uint row, uint column) {
+DEVICE int tiles_overlap(GLOBAL const RealPair* unions, TilePair pair) {
+    const uint row = pair.row;
+    const uint column = pair.column;
     GLOBAL const RealPair* a = unions + (ulong)row * DIRECTIONS;
     GLOBAL const RealPair* b = unions + (ulong)column * DIRECTIONS;
     if (column < row) return 0;
@@ -144,12 +163,13 @@ DEVICE TilesOfBodies tiles_of_bodies(uint row, uint moving_count, uint column, u
 KERNEL void find_body_pairs(GLOBAL const real* volumes, GLOBAL const RealPair* roots,
                             GLOBAL const RealPair* unions, GLOBAL const uint* order,
                             GLOBAL const uint* bodies, GLOBAL const uint* filters, uint body_count,
-                            uint moving_count, GLOBAL uint* pairs, uint capacity, GLOBAL uint* status) {
+                            uint moving_count, GLOBAL const uint* list, uint listed, GLOBAL uint* pairs,
+                            uint capacity, GLOBAL uint* status) {
     LOCAL_ARRAY(RealPair, columns, BROAD_TILE * DIRECTIONS);
     LOCAL_ARRAY(uint, chosen, GROUP_SIZE);
     LOCAL_ARRAY(uint, shared, 3);
     const uint tiles = (body_count + BROAD_TILE - 1u) / BROAD_TILE;
-    const uint total = (moving_count + BROAD_TILE - 1u) / BROAD_TILE * tiles;
+    const uint total = WORLDS ? listed : (moving_count + BROAD_TILE - 1u) / BROAD_TILE * tiles;
     const int is_only_tile = tiles == 1u;
     uint start = GROUP_ID;
     do {
@@ -157,15 +177,16 @@ KERNEL void find_body_pairs(GLOBAL const real* volumes, GLOBAL const RealPair* r
         if (LOCAL_ID == 0u) shared[CHOSEN] = 0u;
         BARRIER;
         if (tile_pair < total
-            && (is_only_tile || tiles_overlap(unions, tile_pair / tiles, tile_pair % tiles)))
+            && (is_only_tile || tiles_overlap(unions, tile_pair_of(list, tiles, tile_pair))))
             chosen[LOCAL_ATOMIC_ADD(shared + CHOSEN, 1u)] = tile_pair;
         BARRIER;
         const uint count = shared[CHOSEN];
         uint i = 0;
         do {
+            const TilePair pair = tile_pair_of(list, tiles, i < count ? chosen[i] : 0u);
             const TilesOfBodies own =
-                i < count ? tiles_of_bodies(chosen[i] / tiles * BROAD_TILE, moving_count,
-                                            chosen[i] % tiles * BROAD_TILE, body_count)
+                i < count ? tiles_of_bodies(pair.row * BROAD_TILE, moving_count, pair.column * BROAD_TILE,
+                                            body_count)
                           : tiles_of_bodies(moving_count, moving_count, body_count, body_count);
             uint row = own.row + LOCAL_ID;
             uint rows_done = own.row;

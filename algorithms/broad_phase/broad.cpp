@@ -7,6 +7,7 @@
 #include "algorithms/bodies/self_pairs.h"
 #include "algorithms/bodies/shift.h"
 #include "algorithms/broad_phase/slab_sweep.h"
+#include "base/parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -97,9 +98,9 @@ void BroadSweep::widen(double* slabs, double skin) const {
     }
 }
 
-std::size_t BroadSweep::sweep_direction(const std::vector<double>& slabs) const {
+std::size_t BroadSweep::sweep_direction(std::span<const double> slabs) const {
     const auto stride = 2 * directions_.size();
-    const auto bodies = scene_.bodies.size();
+    const auto bodies = slabs.size() / stride;
     std::size_t best = 0;
     double most = -1;
     for (std::size_t axis = 0; axis < directions_.size(); ++axis) {
@@ -150,11 +151,34 @@ void BroadSweep::bound(const FrameInput& input, std::uint32_t body, double skin,
 std::vector<BodyPair> BroadSweep::pairs(const FrameInput& input, std::span<const double> skins) const {
     const auto stride = 2 * directions_.size();
     std::vector<double> slabs(scene_.bodies.size() * stride);
-    for (std::uint32_t body = 0; body < scene_.bodies.size(); ++body) {
-        const double skin = skins.empty() ? 0 : skins[body];
-        bound(input, body, skin, &slabs[body * stride]);
-    }
+    constexpr std::size_t part = 1024;
+    const auto bodies = scene_.bodies.size();
+    parallel_for((bodies + part - 1) / part, [&](std::size_t i) {
+        for (auto body = i * part; body < std::min(bodies, (i + 1) * part); ++body)
+            bound(input, static_cast<std::uint32_t>(body), skins.empty() ? 0 : skins[body],
+                  &slabs[body * stride]);
+    });
     return swept(slabs);
+}
+
+/// Each world by itself, on all cores.
+std::vector<BodyPair> BroadSweep::swept_by_world(const std::vector<double>& slabs) const {
+    std::vector<std::uint32_t> firsts; // bodies with which worlds begin
+    const auto bodies = static_cast<std::uint32_t>(scene_.bodies.size());
+    for (std::uint32_t body = 0; body < bodies; ++body)
+        if (body == 0 || world_of(scene_, body) != world_of(scene_, body - 1)) firsts.push_back(body);
+    firsts.push_back(bodies);
+    std::vector<std::vector<BodyPair>> found(firsts.size() - 1);
+    const auto stride = 2 * directions_.size();
+    parallel_for(found.size(), [&](std::size_t world) {
+        const auto first = firsts[world];
+        const auto own = std::span(slabs).subspan(first * stride, (firsts[world + 1] - first) * stride);
+        found[world] = overlapping(own, directions_.size(), sweep_direction(own));
+        for (auto& pair : found[world]) pair = {pair.a + first, pair.b + first};
+    });
+    std::vector<BodyPair> all;
+    for (const auto& pairs : found) all.insert(all.end(), pairs.begin(), pairs.end());
+    return all;
 }
 
 std::vector<BodyPair> BroadSweep::pairs(std::span<const Ball> balls) const {
@@ -169,7 +193,8 @@ std::vector<BodyPair> BroadSweep::pairs(std::span<const Ball> balls) const {
 
 /// The pairs of bodies whose slabs overlap along all directions, and those of bodies with themselves.
 std::vector<BodyPair> BroadSweep::swept(const std::vector<double>& slabs) const {
-    auto pairs = overlapping(slabs, directions_.size(), sweep_direction(slabs));
+    auto pairs = scene_.world_size != 0 ? swept_by_world(slabs)
+                                        : overlapping(slabs, directions_.size(), sweep_direction(slabs));
     std::erase_if(pairs, [this](BodyPair pair) { return !may_meet(scene_, pair.a, pair.b); });
     const auto of_two = static_cast<std::ptrdiff_t>(pairs.size());
     pairs.insert(pairs.end(), own_.begin(), own_.end());

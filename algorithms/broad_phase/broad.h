@@ -49,7 +49,8 @@ private:
     void bound_rigid(const Shape& shape, const Pose& pose, double* slabs) const;
     void bound_deformed(const std::vector<Eigen::Vector3d>& vertices, double* slabs) const;
     void widen(double* slabs, double skin) const;
-    std::size_t sweep_direction(const std::vector<double>& slabs) const;
+    std::size_t sweep_direction(std::span<const double> slabs) const;
+    std::vector<BodyPair> swept_by_world(const std::vector<double>& slabs) const;
 
     const Scene& scene_;
     std::vector<Eigen::Vector3d> directions_;

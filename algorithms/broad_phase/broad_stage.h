@@ -32,7 +32,8 @@ public:
 
 private:
     std::vector<Eigen::Vector3d> centres(const Frame& frame) const;
-    void upload(const std::vector<std::uint32_t>& order);
+    void upload(std::vector<std::uint32_t> order);
+    void list_tile_pairs(const std::vector<std::uint32_t>& order);
     template<class Real>
     std::vector<Eigen::Vector3d> centres_of_volumes() const;
     void sort(const std::vector<Eigen::Vector3d>& centres);
@@ -45,6 +46,8 @@ private:
     std::uint32_t moving_count_ = 0; ///< moving bodies, which are first in it; every pair has one
     std::vector<Eigen::Vector3d> mesh_centres_;
     Buffer order_, roots_, unions_, filters_;
+    Buffer list_; ///< pairs of tiles that have bodies of one world; unused in a scene of one world
+    std::uint32_t listed_ = 0;                   ///< their number
     KernelOf<kernels::broad::BoundTiles> bound_; ///< null for a single tile
     KernelOf<kernels::broad::FindBodyPairs> find_;
 };

@@ -12,6 +12,7 @@ std::vector<std::uint32_t> filter_table(const Scene& scene) {
     const auto count = static_cast<std::uint32_t>(scene.bodies.size());
     std::vector<std::uint32_t> table{count};
     for (const auto& body : scene.bodies) table.insert(table.end(), {body.groups, body.meets});
+    for (std::uint32_t body = 0; body < count; ++body) table.push_back(world_of(scene, body));
     auto next = scene.never_meet.begin();
     for (std::uint32_t body = 0; body <= count; ++body) {
         while (next != scene.never_meet.end() && (*next)[0] < body) ++next;

@@ -41,6 +41,7 @@ std::shared_ptr<const Scene> local_subscene(const Scene& scene, const std::vecto
     local_scene->frame_count = scene.frame_count;
     local_scene->digest = scene.digest;
     local_scene->numbers = bodies;
+    local_scene->world_size = scene.world_size;
     constexpr auto none = std::numeric_limits<std::uint32_t>::max();
     std::vector<std::uint32_t> meshes(scene.meshes.size(), none); // local number by number in the whole scene
     for (const auto number : bodies) {

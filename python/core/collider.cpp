@@ -41,17 +41,9 @@ Scene scene_of(std::vector<Mesh> meshes, const ColliderOptions& options) {
     for (const auto& [a, b] : options.never_meet)
         scene.never_meet.push_back({std::min(a, b), std::max(a, b)});
     std::ranges::sort(scene.never_meet);
+    if (options.worlds > 1)
+        scene.world_size = static_cast<std::uint32_t>(scene.bodies.size() / options.worlds);
     return scene;
-}
-
-/// The bodies of the first of several worlds, with their filters.
-Scene one_world(const Scene& scene, std::size_t worlds) {
-    Scene first;
-    first.bodies.assign(scene.bodies.begin(),
-                        scene.bodies.begin() + static_cast<std::ptrdiff_t>(scene.bodies.size() / worlds));
-    for (const auto& pair : scene.never_meet)
-        if (pair[1] < first.bodies.size()) first.never_meet.push_back(pair);
-    return first;
 }
 
 /// Whether a preset of that name reproduces a program of others, which has its own contacts.
@@ -173,40 +165,18 @@ void Collider::prepare(const ColliderOptions& options) {
     }
     precision_ = geometry_of(settings).precision;
     motion_ = settings[parameters::motion];
-    if (options.worlds > 1)
-        world_pairs_.emplace(scene_, geometry_of(settings), settings[parameters::broad],
-                             settings[parameters::self], options.worlds);
-    nothing_meets_ = why_nothing_meets(one_world(scene_, options.worlds), settings[parameters::self]);
+    nothing_meets_ = why_nothing_meets(scene_, settings[parameters::self]);
     host_input_.emplace(scene_, precision_);
     check_range(scene_, rest_frame(scene_), precision_);
     if (traversal == nullptr) return;
     session_ = traversal->prepare(devices_, scene_, settings);
 }
 
-std::optional<std::vector<BodyPair>> Collider::world_pairs(const FrameInput& frames) const {
-    return world_pairs_ ? std::optional(world_pairs_->pairs(frames)) : std::nullopt;
-}
-
-std::optional<std::vector<BodyPair>> Collider::world_pairs(const DeviceFrameInput& frames) const {
-    if (!world_pairs_) return std::nullopt;
-    const auto checked = [&](const DeviceFrame& frame) {
-        auto on_host = downloaded(*devices_.front(), scene_, frame);
-        check_range(scene_, on_host, precision_);
-        return on_host;
-    };
-    const auto frame = checked(frames.frame);
-    if (frames.next == nullptr) return world_pairs_->pairs(frame);
-    const auto next = of_successor([&] { return checked(*frames.next); });
-    return world_pairs_->pairs({frame, &next});
-}
-
 template<class Frames>
 FrameResult Collider::run_frame(Session& session, const Frames& frames,
                                 const std::optional<std::vector<BodyPair>>& given) {
     ++frames_;
-    if (given) return run_among(session, frames, *given);
-    const auto found = world_pairs(frames);
-    return run_among(session, frames, found ? BodyPairs(*found) : std::nullopt);
+    return run_among(session, frames, given ? BodyPairs(*given) : std::nullopt);
 }
 
 template<class Frames>
@@ -243,10 +213,6 @@ CollideRun Collider::run(const Input& input) {
 std::pair<QueuedFrame, std::uint64_t> Collider::enqueue(const Input& input, std::optional<void*> stream) {
     const auto own = lock();
     check(input);
-    if (world_pairs_)
-        throw InputError(
-            "enqueue() cannot wait for the host, which finds the body pairs of several worlds; call "
-            "run()");
     auto& device = *devices_.front();
     return with_signals([&] {
         if (stream) device.follow(*stream);

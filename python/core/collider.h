@@ -7,7 +7,6 @@
 #include "python/core/device_input.h"
 #include "python/core/host_input.h"
 #include "python/core/process.h"
-#include "python/core/world_pairs.h"
 
 #include <algorithm>
 #include <memory>
@@ -108,10 +107,6 @@ private:
     /// A checked input as frames. The next call overwrites them.
     FrameInput host_frames(const Input& input);
     DeviceFrameInput device_frames(const Input& input);
-    /// The body pairs of all worlds; none if there is one world, of which the session finds them.
-    std::optional<std::vector<BodyPair>> world_pairs(const FrameInput& frames) const;
-    /// The same by a download of the frames. Throws InputError as the session does for them.
-    std::optional<std::vector<BodyPair>> world_pairs(const DeviceFrameInput& frames) const;
     /// The result of `work`, which a signal may end.
     template<class Work>
     auto with_signals(const Work& work);
@@ -131,7 +126,6 @@ private:
     std::vector<Cell> candidates_; ///< candidates of algorithm auto
     Precision precision_ = Precision::fp32;
     Motion motion_ = Motion::none;
-    std::optional<WorldPairs> world_pairs_;                 ///< of several worlds
     std::optional<HostInput> host_input_, next_host_input_; ///< of frames, and of their successors
     std::optional<DeviceInput> device_input_;
     std::uint64_t frames_ = 0;         ///< number of frames that sessions began to run

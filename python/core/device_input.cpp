@@ -10,48 +10,8 @@ namespace tandem::python {
 namespace {
 
 constexpr std::size_t pose_numbers = 7, coordinates = 3;
-constexpr std::size_t max_adopted = 64;
-
-std::vector<double> downloaded_numbers(Device& device, const DeviceRows& rows, std::size_t count) {
-    std::vector<double> numbers(count);
-    if (rows.precision == Precision::fp64) {
-        device.download(rows.buffer, std::as_writable_bytes(std::span(numbers)));
-        return numbers;
-    }
-    std::vector<float> singles(count);
-    device.download(rows.buffer, std::as_writable_bytes(std::span(singles)));
-    std::ranges::copy(singles, numbers.begin());
-    return numbers;
-}
 
 } // namespace
-
-Frame downloaded(Device& device, const Scene& scene, const DeviceFrame& frame) {
-    auto result = rest_frame(scene);
-    const StageScope scope(device, Stage::read);
-    if (frame.poses.buffer) {
-        const auto numbers = downloaded_numbers(device, frame.poses, pose_numbers * scene.bodies.size());
-        for (std::size_t body = 0; body < scene.bodies.size(); ++body)
-            if (!scene.bodies[body].deformable)
-                result.poses[body] = pose_of_row(numbers.data() + pose_numbers * body, body);
-    }
-    for (std::size_t body = 0; body < scene.bodies.size(); ++body) {
-        if (!scene.bodies[body].deformable) continue;
-        auto& vertices = result.deformed[body];
-        const auto numbers = downloaded_numbers(device, frame.deformed[body], coordinates * vertices.size());
-        for (std::size_t i = 0; i < vertices.size(); ++i)
-            vertices[i] = Eigen::Vector3d(&numbers[coordinates * i]);
-    }
-    return result;
-}
-
-/// One handle per array. At max_adopted all are released, for libraries that never reuse memory.
-Buffer DeviceInput::adopted(void* data, std::size_t bytes) {
-    const auto found = adopted_.find({data, bytes});
-    if (found != adopted_.end()) return found->second;
-    if (adopted_.size() >= max_adopted) adopted_.clear();
-    return adopted_[{data, bytes}] = device_.adopt(data, bytes, "rows of an application");
-}
 
 DeviceRows DeviceInput::uploaded(const void* data, std::size_t bytes, Precision precision, Upload& upload) {
     if (upload.buffer.bytes() < bytes) upload.buffer = device_.allocate(bytes, "rows of the host");
@@ -69,7 +29,7 @@ DeviceRows DeviceInput::rows_of(const GivenRows& given, std::size_t columns, Upl
     if (!given.on_device) return uploaded(given.data, bytes, given.precision, upload);
     if (given.queue && given.queue != followed_) device_.follow(*given.queue);
     if (given.queue) followed_ = given.queue;
-    return {adopted(given.data, bytes), given.precision};
+    return {device_.adopt(given.data, bytes, "rows of an application"), given.precision};
 }
 
 DeviceRows DeviceInput::at_rest(std::size_t body, Upload& upload) {

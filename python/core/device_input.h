@@ -4,13 +4,9 @@
 #include "algorithms/traversal.h"
 #include "python/core/frame_arrays.h"
 
-#include <map>
 #include <vector>
 
 namespace tandem::python {
-
-/// A frame in memory of the device, copied to the host after the commands of its queue.
-Frame downloaded(Device& device, const Scene& scene, const DeviceFrame& frame);
 
 /// Makes frames in memory of a device for a session. Kernels read arrays of that device in place. Arrays in
 /// host memory are uploaded.
@@ -44,13 +40,9 @@ private:
     DeviceRows rows_of(const GivenRows& given, std::size_t columns, Upload& upload);
     DeviceRows uploaded(const void* data, std::size_t bytes, Precision precision, Upload& upload);
     DeviceRows at_rest(std::size_t body, Upload& upload);
-    Buffer adopted(void* data, std::size_t bytes);
 
     Device& device_;
     const Scene& scene_;
-    /// Adopted arrays by address and bytes. They are kept, because releasing one discards the device's data
-    /// on commands of earlier frames.
-    std::map<std::pair<void*, std::size_t>, Buffer> adopted_;
     Rows frame_, next_;
     bool has_next_ = false; ///< whether the last frame had a successor
     std::optional<void*>

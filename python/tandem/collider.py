@@ -76,8 +76,7 @@ class Collider:
         of one world. Poses are then (N, bodies, 7) or (N, bodies, 4, 4), vertices (N, n, 3) for each
         deformable body, body_pairs rows of (world, body, body), and keys of update() pairs (world, body).
         Rows of answers begin with the number of the world. In messages of poses, row world * bodies + body is
-        meant. Body pairs are found on the host, world by world on all cores, so that frames in memory of the
-        device are read back.
+        meant.
     stream: a CUDA stream of the device on which the collider enqueues its commands, in order with those of
     the application. Either
         cupy.cuda.get_current_stream() or torch.cuda.current_stream(), which the collider keeps alive, or the

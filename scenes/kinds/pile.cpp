@@ -69,7 +69,9 @@ Frame moved(const std::vector<Mover>& movers, const Eigen::Vector3d& middle, dou
 
 Scene make(std::span<const SceneParameter> parameters) {
     Scene scene;
-    const auto bodies = integer_parameter(parameters, "bodies", 1, 10000000);
+    const auto world = integer_parameter(parameters, "bodies", 1, 10000000);
+    const auto worlds = integer_parameter(parameters, "worlds", 1, 10000000 / world);
+    const auto bodies = world * worlds;
     const double density = real_parameter(parameters, "density", 1e-6, 1e3);
     const double offset = real_parameter(parameters, "far", -1e9, 1e9);
     scene.frame_count = integer_parameter(parameters, "frames", 1, 1000000);
@@ -77,8 +79,9 @@ Scene make(std::span<const SceneParameter> parameters) {
     const auto levels = refine_value(parameters);
     refuse_bodies_beyond_memory(bodies, scene.meshes.front(), levels);
     scene.bodies.assign(bodies, Body{});
+    if (worlds > 1) scene.world_size = static_cast<std::uint32_t>(world);
     const auto [middle, radius] = bounding_sphere(scene.meshes.front());
-    const double side = cube_root(static_cast<double>(bodies) * volume(scene.meshes.front()) / density);
+    const double side = cube_root(static_cast<double>(world) * volume(scene.meshes.front()) / density);
     scene.meshes.front() = refined(scene.meshes.front(), levels);
     Random random(integer_parameter(parameters, "seed", 0, ~std::uint64_t{0}));
     std::vector<Mover> movers(bodies);
@@ -100,7 +103,8 @@ SceneKind pile_kind() {
     return {"pile",
             "rigid bodies of one mesh at random poses in a box, drifting and spinning slowly; no forces, "
             "bodies overlap",
-            {{"bodies", "64", "number of bodies"},
+            {{"bodies", "64", "number of bodies, of each world"},
+             {"worlds", "1", "worlds in the same box, whose bodies never meet", "1"},
              {"mesh", "jack", "a built-in mesh or a mesh file"},
              {"density", "0.2", "sum of the bodies' volumes over the volume of the box"},
              {"seed", "1", "seed of the poses"},

@@ -3,7 +3,10 @@
 #include "tests/support/limited.h"
 #include "tests/support/long_form.h"
 #include "tests/support/scenes.h"
+#include "algorithms/bodies/nothing_meets.h"
+#include "algorithms/bodies/self_pairs.h"
 #include "harness/verify/reference.h"
+#include "tests/support/message_of.h"
 #include "tests/support/on_device.h"
 #include "tests/support/test.h"
 
@@ -70,6 +73,60 @@ TEST_P(Filters, KeepBodiesApartInEveryBroadPhase) {
         }
 }
 
+/// Worlds of sizes about that of a tile of the broad phase, which are all in the same place, and fixed bodies
+/// in each.
+Scene in_worlds(std::uint32_t size, std::uint32_t count) {
+    auto scene = crowd(71, size * count, 1.5);
+    for (std::uint32_t body = 2; body < scene.bodies.size(); body += 5) scene.bodies[body].fixed = true;
+    scene.world_size = size;
+    return scene;
+}
+
+TEST_P(Filters, WorldsAreApartInEveryBroadPhase) {
+    for (const auto& [size, count] :
+         {std::pair(1u, 40u), {2u, 70u}, {5u, 13u}, {16u, 9u}, {31u, 3u}, {32u, 3u}, {33u, 4u}, {70u, 2u}}) {
+        const auto scene = in_worlds(size, count);
+        auto whole = scene;
+        whole.world_size = 0;
+        for (const std::string broad : {"device", "tight"}) {
+            SCOPED_TRACE(fmt::format("{} worlds of {}, broad={}", count, size, broad));
+            const SettingTexts given{{"broad", broad}, {"self", "deformable"}, {"contact_rule", "none"}};
+            const auto& tiled = algorithm("tiled");
+            auto right = prepare_on(on, tiled, whole, given)->run(whole.frame(0)).download();
+            std::erase_if(right, [&](const Pair& pair) { return pair.body_a / size != pair.body_b / size; });
+            const auto session = prepare_on(on, tiled, scene, given);
+            const auto result = session->run(scene.frame(0));
+            EXPECT_EQ(result.download(), right);
+            EXPECT_LE(result.body_pairs, most_body_pairs(scene, SelfPairs::deformable));
+            if (size > 1) {
+                EXPECT_GT(right.size(), 0u);
+            }
+            if (!long_form()) continue;
+            EXPECT_EQ(prepare_on(on, algorithm("leaf_query"), scene,
+                                 {{"tree", "scene"}, {"contact_rule", "none"}, {"self", "deformable"}})
+                          ->run(scene.frame(0))
+                          .download(),
+                      right);
+        }
+    }
+}
+
+TEST(FilteredScenes, AWorldThatDoesNotDivideTheBodiesIsRefused) {
+    auto scene = crowd(5, 6, 1.5);
+    scene.world_size = 4;
+    EXPECT_THAT(message_of([&] { prepare_on(device("host"), algorithm("tiled"), scene); }),
+                testing::HasSubstr("world_size is 4, which does not divide 6 bodies"));
+    scene.world_size = 1;
+    EXPECT_NE(why_nothing_meets(scene, SelfPairs::off), "");
+    EXPECT_EQ(why_nothing_meets(scene, SelfPairs::on), "");
+    scene.world_size = 3;
+    EXPECT_EQ(why_nothing_meets(scene, SelfPairs::off), "");
+    scene.never_meet = {{0, 1}, {0, 2}, {1, 2}, {3, 4}, {3, 5}, {4, 5}};
+    EXPECT_NE(why_nothing_meets(scene, SelfPairs::off), "");
+    scene.never_meet.pop_back();
+    EXPECT_EQ(why_nothing_meets(scene, SelfPairs::off), "");
+}
+
 /// Body pairs of the caller are all walked.
 TEST_P(Filters, DoNotApplyToGivenPairs) {
     auto scene = crowd(62, 4, 0.5);
@@ -94,20 +151,23 @@ TEST_P(Filters, HaveAReference) {
 }
 
 TEST(FilteredParts, OfTwoDevicesAddUp) {
-    const auto scene = filtered(procession(40, 2, 0.1), 7);
-    const std::array both{&device("host"), &device("opencl:0")};
-    for (const std::string broad : {"device", "tight"}) {
-        SCOPED_TRACE(broad);
-        const auto& tiled = algorithm("tiled");
-        const auto settings = resolved(tiled, {{"broad", broad}, {"self", "on"}});
-        const auto one = tiled.prepare(std::span(both).first(1), scene, settings);
-        const auto two = tiled.prepare(both, scene, settings);
-        for (const std::size_t i : {0u, 1u}) {
-            const auto right = one->run(scene.frame(i));
-            const auto result = two->run(scene.frame(i));
-            ASSERT_GT(right.count, 0u);
-            EXPECT_EQ(result.digest(), right.digest());
-            EXPECT_EQ(result.body_pairs, right.body_pairs);
+    for (const std::uint32_t world_size : {0u, 8u}) {
+        auto scene = filtered(procession(40, 2, 0.1), 7);
+        scene.world_size = world_size;
+        const std::array both{&device("host"), &device("opencl:0")};
+        for (const std::string broad : {"device", "tight"}) {
+            SCOPED_TRACE(broad);
+            const auto& tiled = algorithm("tiled");
+            const auto settings = resolved(tiled, {{"broad", broad}, {"self", "on"}});
+            const auto one = tiled.prepare(std::span(both).first(1), scene, settings);
+            const auto two = tiled.prepare(both, scene, settings);
+            for (const std::size_t i : {0u, 1u}) {
+                const auto right = one->run(scene.frame(i));
+                const auto result = two->run(scene.frame(i));
+                ASSERT_GT(right.count, 0u);
+                EXPECT_EQ(result.digest(), right.digest());
+                EXPECT_EQ(result.body_pairs, right.body_pairs);
+            }
         }
     }
 }
