@@ -127,6 +127,7 @@ void Session::check_frames(const FrameInput& input) const {
 
 void Session::begin_at(const Scene& scene, std::shared_ptr<const Scene> centred) {
     scene_ = &scene;
+    deformable_ = deformable_bodies(scene);
     centred_ = std::move(centred);
     const auto setting = geometry_of(settings()).origin;
     first_frame_places_ = setting == Origin::automatic && !scene.frame;
@@ -163,10 +164,10 @@ Frame Session::as_on_devices(const Frame& frame) const {
 
 template<class Work>
 auto Session::with_device_input(const DeviceFrameInput& input, const Work& work) {
-    check_fits(*scene_, input.frame);
+    check_fits(*scene_, deformable_, input.frame);
     if (!is_placed_ && devices().size() == 1) // several devices refuse the frame
         place(downloaded(*devices().front(), *scene_, input.frame));
-    if (input.next != nullptr) check_fits(*scene_, *input.next);
+    if (input.next != nullptr) check_fits(*scene_, deformable_, *input.next);
     if (input.next == nullptr || input.frame.skipped == input.next->skipped) return work(input);
     auto frame = input.frame;
     frame.skipped = skipped_in_either(input.frame.skipped, input.next->skipped);

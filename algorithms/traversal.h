@@ -145,6 +145,7 @@ private:
     bool first_frame_places_ = false;      ///< the first frame decides the origin
     bool is_placed_ = true;                ///< the origin is fixed until reset()
     const Scene* scene_ = nullptr;         ///< the argument of prepare()
+    std::vector<std::uint32_t> deformable_; ///< its deformable bodies
     std::shared_ptr<const Scene> centred_; ///< what the devices have in its place; null: the same
 };
 

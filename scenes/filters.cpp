@@ -15,6 +15,13 @@ bool may_meet(const Scene& scene, std::uint32_t a, std::uint32_t b) {
     return !std::ranges::binary_search(scene.never_meet, std::array{std::min(a, b), std::max(a, b)});
 }
 
+std::vector<std::uint32_t> deformable_bodies(const Scene& scene) {
+    std::vector<std::uint32_t> bodies;
+    for (std::uint32_t body = 0; body < scene.bodies.size(); ++body)
+        if (scene.bodies[body].deformable) bodies.push_back(body);
+    return bodies;
+}
+
 std::vector<std::uint32_t> skipped_in(const Scene& scene, const Frame& frame, std::size_t body) {
     const auto& merged = scene.meshes[scene.bodies[body].mesh].merged;
     if (frame.skipped.empty()) return merged;

@@ -64,6 +64,9 @@ struct Scene {
     std::vector<Eigen::Vector3d> shifts{};
 };
 
+/// The deformable bodies, ascending.
+std::vector<std::uint32_t> deformable_bodies(const Scene& scene);
+
 /// The number of a body in the whole scene, which results use.
 inline std::uint32_t number_of(const Scene& scene, std::size_t body) {
     return scene.numbers.empty() ? static_cast<std::uint32_t>(body) : scene.numbers[body];

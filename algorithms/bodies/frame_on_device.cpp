@@ -28,10 +28,11 @@ std::vector<double> numbers_of(Device& device, const DeviceRows& rows, std::size
     return numbers;
 }
 
-void check_capacity(const DeviceRows& rows, std::size_t numbers, const std::string& name) {
+template<class Name>
+void check_capacity(const DeviceRows& rows, std::size_t numbers, const Name& name) {
     const auto bytes = numbers * bytes_of_number(rows);
     if (rows.buffer.bytes() < bytes)
-        throw InputError(fmt::format("{}: a buffer of {} bytes is too small for {} numbers of {} bytes", name,
+        throw InputError(fmt::format("{}: a buffer of {} bytes is too small for {} numbers of {} bytes", name(),
                                      rows.buffer.bytes(), numbers, bytes_of_number(rows)));
 }
 
@@ -49,15 +50,14 @@ Pose pose_of_row(const double* row, std::size_t body) {
     return {*rotation, translation};
 }
 
-void check_fits(const Scene& scene, const DeviceFrame& frame) {
-    if (frame.poses.buffer) check_capacity(frame.poses, scene.bodies.size() * pose_numbers, "poses");
+void check_fits(const Scene& scene, std::span<const std::uint32_t> deformable, const DeviceFrame& frame) {
+    if (frame.poses.buffer) check_capacity(frame.poses, scene.bodies.size() * pose_numbers, [] { return "poses"; });
     if (frame.deformed.size() != scene.bodies.size())
         throw InputError(fmt::format("the frame has {} entries of vertices for {} bodies; give one per body",
                                      frame.deformed.size(), scene.bodies.size()));
-    for (std::size_t body = 0; body < scene.bodies.size(); ++body)
-        if (scene.bodies[body].deformable)
-            check_capacity(frame.deformed[body], 3 * scene.meshes[scene.bodies[body].mesh].vertices.size(),
-                           fmt::format("vertices of body {}", body));
+    for (const auto body : deformable)
+        check_capacity(frame.deformed[body], 3 * scene.meshes[scene.bodies[body].mesh].vertices.size(),
+                       [body] { return fmt::format("vertices of body {}", body); });
 }
 
 Frame downloaded(Device& device, const Scene& scene, const DeviceFrame& frame) {

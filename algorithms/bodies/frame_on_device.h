@@ -8,7 +8,8 @@
 namespace tandem {
 
 /// Throws InputError that names the first missing buffer, or the first that is too small for the scene.
-void check_fits(const Scene& scene, const DeviceFrame& frame);
+/// `deformable`: deformable_bodies(scene).
+void check_fits(const Scene& scene, std::span<const std::uint32_t> deformable, const DeviceFrame& frame);
 
 /// Downloads the frame; waits. Throws InputError for the first row without a rotation.
 Frame downloaded(Device& device, const Scene& scene, const DeviceFrame& frame);

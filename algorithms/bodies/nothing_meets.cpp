@@ -86,7 +86,7 @@ std::string why_nothing_meets(const Scene& scene, SelfPairs self) {
     for (std::uint32_t body = 0; body < scene.bodies.size(); ++body)
         if (meets_itself(scene, body, self)) return {};
     if (scene.bodies.empty() || two_bodies_may_meet(scene)) return {};
-    if (scene.bodies.size() == 1 && self != SelfPairs::on)
+    if ((scene.bodies.size() == 1 || scene.world_size == 1) && self != SelfPairs::on)
         return fmt::format("there is one body, which setting self={} does not pair with itself; choose "
                            "self=on, or add a body",
                            self == SelfPairs::off ? "off" : "deformable");

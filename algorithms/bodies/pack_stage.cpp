@@ -34,7 +34,10 @@ void check_device(const DeviceInfo& info, const Geometry& geometry) {
 } // namespace
 
 PackStage::PackStage(const Bodies& bodies, LaunchShape shape)
-    : bodies_(bodies), shape_(shape), limit_(largest_coordinate(bodies.geometry().precision)) {
+    : bodies_(bodies),
+      shape_(shape),
+      limit_(largest_coordinate(bodies.geometry().precision)),
+      deformable_(deformable_bodies(bodies.scene())) {
     auto& device = bodies.device();
     const auto& scene = bodies.scene();
     check_device(device.info(), bodies.geometry());
@@ -116,9 +119,7 @@ void PackStage::pack_vertices(std::size_t body, const DeviceRows& rows, const Bu
 void PackStage::pack(const DeviceFrame& frame, const Buffer& poses, const Buffer& vertices,
                      const Eigen::Vector3d& origin, const Buffer& status) const {
     pack_poses(frame.poses, poses, origin, status);
-    for (std::size_t body = 0; body < frame.deformed.size(); ++body)
-        if (bodies_.scene().bodies[body].deformable)
-            pack_vertices(body, frame.deformed[body], vertices, origin, status);
+    for (const auto body : deformable_) pack_vertices(body, frame.deformed[body], vertices, origin, status);
 }
 
 void PackStage::launch(const DeviceFrameInput& input, const Eigen::Vector3d& origin,

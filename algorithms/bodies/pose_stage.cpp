@@ -3,6 +3,7 @@
 
 #include "algorithms/kernels/sources.h"
 #include "backends/upload.h"
+#include "base/parallel.h"
 
 #include <algorithm>
 
@@ -45,9 +46,21 @@ void PoseStage::launch(const Frame& frame, bool all) {
     auto& device = bodies_.device();
     {
         const HostWork work(device, Stage::preprocess, "copy poses");
-        auto* to = numbers_.data();
-        for (const auto& [q, t] : frame.poses)
-            for (const double number : {t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z()}) *to++ = number;
+        const auto copy = [&](std::size_t begin, std::size_t end) {
+            auto* to = numbers_.data() + numbers_per_pose * begin;
+            for (auto body = begin; body < end; ++body) {
+                const auto& [q, t] = frame.poses[body];
+                for (const double number : {t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z()}) *to++ = number;
+            }
+        };
+        const auto bodies = frame.poses.size();
+        constexpr std::size_t part = 4096; // bodies that a processor copies in a few times the start of a loop
+        if (bodies <= part)
+            copy(0, bodies);
+        else
+            parallel_for((bodies + part - 1) / part, [&](std::size_t i) {
+                copy(i * part, std::min(bodies, (i + 1) * part));
+            });
     }
     {
         const StageScope scope(device, Stage::write);

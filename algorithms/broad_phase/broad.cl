@@ -65,6 +65,11 @@ DEVICE TilePair tile_pair_of(GLOBAL const uint* list, uint tiles, uint index) {
     return pair;
 }
 
+// Number of pairs of tiles.
+DEVICE uint tile_pairs_in(uint tiles, uint moving_count, uint listed) {
+    return WORLDS ? listed : (moving_count + BROAD_TILE - 1u) / BROAD_TILE * tiles;
+}
+
 // Whether the pairs of these tiles must be tested. Each pair of tiles is tested once, with row <= column.
 DEVICE int tiles_overlap(GLOBAL const RealPair* unions, TilePair pair) {
     const uint row = pair.row;
@@ -142,13 +147,18 @@ typedef struct {
     uint column, columns;
 } TilesOfBodies;
 
-DEVICE TilesOfBodies tiles_of_bodies(uint row, uint moving_count, uint column, uint body_count) {
+DEVICE TilesOfBodies tiles_of_bodies(TilePair pair, uint moving_count, uint body_count) {
     TilesOfBodies tiles;
-    tiles.row = row;
-    tiles.rows_end = moving_count - row < BROAD_TILE ? moving_count : row + BROAD_TILE;
-    tiles.column = column;
-    tiles.columns = body_count - column < BROAD_TILE ? body_count - column : BROAD_TILE;
+    tiles.row = pair.row * BROAD_TILE;
+    tiles.rows_end = moving_count - tiles.row < BROAD_TILE ? moving_count : tiles.row + BROAD_TILE;
+    tiles.column = pair.column * BROAD_TILE;
+    tiles.columns = body_count - tiles.column < BROAD_TILE ? body_count - tiles.column : BROAD_TILE;
     return tiles;
+}
+
+DEVICE TilesOfBodies no_bodies(uint moving_count, uint body_count) {
+    const TilesOfBodies none = {moving_count, moving_count, body_count, 0};
+    return none;
 }
 
 // Words shared by a work-group.
@@ -169,7 +179,7 @@ KERNEL void find_body_pairs(GLOBAL const real* volumes, GLOBAL const RealPair* r
     LOCAL_ARRAY(uint, chosen, GROUP_SIZE);
     LOCAL_ARRAY(uint, shared, 3);
     const uint tiles = (body_count + BROAD_TILE - 1u) / BROAD_TILE;
-    const uint total = WORLDS ? listed : (moving_count + BROAD_TILE - 1u) / BROAD_TILE * tiles;
+    const uint total = tile_pairs_in(tiles, moving_count, listed);
     const int is_only_tile = tiles == 1u;
     uint start = GROUP_ID;
     do {
@@ -183,11 +193,9 @@ KERNEL void find_body_pairs(GLOBAL const real* volumes, GLOBAL const RealPair* r
         const uint count = shared[CHOSEN];
         uint i = 0;
         do {
-            const TilePair pair = tile_pair_of(list, tiles, i < count ? chosen[i] : 0u);
             const TilesOfBodies own =
-                i < count ? tiles_of_bodies(pair.row * BROAD_TILE, moving_count, pair.column * BROAD_TILE,
-                                            body_count)
-                          : tiles_of_bodies(moving_count, moving_count, body_count, body_count);
+                i < count ? tiles_of_bodies(tile_pair_of(list, tiles, chosen[i]), moving_count, body_count)
+                          : no_bodies(moving_count, body_count);
             uint row = own.row + LOCAL_ID;
             uint rows_done = own.row;
             NO_UNROLL for (uint c = LOCAL_ID; c < own.columns; c += GROUP_SIZE) {

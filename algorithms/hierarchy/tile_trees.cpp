@@ -40,6 +40,7 @@ TileTrees::TileTrees(const Bodies& bodies, Slabs slabs, SelfPairs self, std::uin
       shapes_(bodies),
       incidence_(bodies, self) {
     lay_out();
+    limit_group_size();
     choose_beginnings(most_seeds, self);
     plan_refit();
     tile_table_ = uploaded(device_, bytes_of(tile_rows()), "tiles");
@@ -58,9 +59,9 @@ TileTrees::TileTrees(const Bodies& bodies, Slabs slabs, SelfPairs self, std::uin
     const std::uint64_t marked = slabs_ == Slabs::touched ? first_upper() : 1;
     const std::vector<std::uint32_t> marks((marked + tiles_a_turn - 1) / tiles_a_turn * tiles_a_turn);
     marks_ = uploaded(device_, bytes_of(marks), "marks of tiles");
-    compile_kernel(device_, leaf_kernel_, defines(group_size));
-    compile_kernel(device_, upper_kernel_, defines(group_size));
-    if (slabs_ == Slabs::touched) compile_kernel(device_, touched_kernel_, defines(group_size));
+    compile_kernel(device_, leaf_kernel_, defines(group_size_));
+    compile_kernel(device_, upper_kernel_, defines(group_size_));
+    if (slabs_ == Slabs::touched) compile_kernel(device_, touched_kernel_, defines(group_size_));
 }
 
 Defines TileTrees::defines(std::uint32_t group_size) const {
@@ -96,6 +97,15 @@ void TileTrees::lay_out() {
     tile_count_ = static_cast<std::uint32_t>(count);
     is_top_.resize(levels());
     for (const auto& first : first_tiles_) is_top_[first.size() - 1] = true;
+}
+
+/// A group has no more teams than any unit has tiles: bodies of two tiles are refitted in twice as many groups
+/// at once as with four teams.
+void TileTrees::limit_group_size() {
+    std::uint32_t most = 1;
+    for (std::uint32_t body = 0; body < bodies_.count(); ++body)
+        most = std::max(most, std::min(boxes_of(body, 1), lanes));
+    if (group_size_ > lanes) group_size_ = std::min(group_size_, std::bit_ceil(most) * lanes);
 }
 
 /// Selects the lowest level that all bodies have and whose tile pairs are few enough to test without the

@@ -85,6 +85,7 @@ private:
     std::size_t do_bytes() const override;
 
     void lay_out();
+    void limit_group_size();
     void choose_beginnings(std::uint64_t most_seeds, SelfPairs self);
     std::vector<std::uint32_t> top_tiles() const;
     std::vector<Tile> tile_rows() const;

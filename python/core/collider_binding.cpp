@@ -81,12 +81,15 @@ std::unique_ptr<Answer> run_arrays(const std::shared_ptr<Collider>& collider, nb
     return run(collider, *input);
 }
 
+/// (body pairs or None, a stream's address or None).
+using EnqueueOptions = std::tuple<std::optional<BodyPairNumbers>, std::optional<std::uintptr_t>>;
+
 std::unique_ptr<Queued> enqueue_arrays(const std::shared_ptr<Collider>& collider, nb::handle poses,
                                        nb::handle vertices, nb::handle next_poses, nb::handle next_vertices,
-                                       const std::optional<BodyPairNumbers>& body_pairs,
-                                       std::optional<std::uintptr_t> stream) {
+                                       const EnqueueOptions& options) {
     auto input = input_of(*collider, {poses, vertices}, {next_poses, next_vertices});
     if (!input) return nullptr;
+    const auto& [body_pairs, stream] = options;
     if (body_pairs) input->body_pairs = body_pairs_of(*body_pairs);
     const nb::gil_scoped_release released;
     auto [frame, number] =
@@ -129,20 +132,15 @@ void bind_options(nb::module_& module) {
              nb::arg("worlds"), nb::arg("stream").none());
 }
 
-} // namespace
-
-void bind_collider(nb::module_& module) {
-    module.def("algorithms", &algorithm_names, "Names of the algorithms that Collider accepts besides auto.");
-    bind_options(module);
-    const auto released = nb::call_guard<nb::gil_scoped_release>();
+/// Calls with the arrays of a frame.
+void bind_runs(nb::class_<Collider>& collider) {
     const auto run_device_input = [](const std::shared_ptr<Collider>& self, nb::handle poses,
                                      const nb::list& vertices, nb::handle next_poses,
                                      const std::optional<nb::list>& next_vertices) {
         const nb::object next = next_vertices ? nb::object(*next_vertices) : nb::none();
         return run(self, device_input(*self, {poses, vertices}, {next_poses, next}));
     };
-    nb::class_<Collider>(module, "Collider", "Implementation of tandem.Collider, which checks its input.")
-        .def(nb::new_(&make), nb::arg("meshes"), nb::arg("options"), nb::arg("owner").none())
+    collider
         .def("run", &run_arrays, nb::arg("poses").none(), nb::arg("vertices").none(),
              nb::arg("next_poses").none(), nb::arg("next_vertices").none(), nb::arg("body_pairs").none(),
              nb::sig(
@@ -150,15 +148,13 @@ void bind_collider(nb::module_& module) {
                  "next_vertices: object | None, body_pairs: list[tuple[int, int]] | None) -> Answer | None"),
              "Runs a frame. vertices, next_vertices: a list with one array per deformable body, or "
              "{number: array}. Returns None for any other container.")
-        .def(
-            "enqueue", &enqueue_arrays, nb::arg("poses").none(), nb::arg("vertices").none(),
-            nb::arg("next_poses").none(), nb::arg("next_vertices").none(), nb::arg("body_pairs").none(),
-            nb::arg("stream").none(),
-            nb::sig(
-                "def enqueue(self, poses: object | None, vertices: object | None, next_poses: object | None, "
-                "next_vertices: object | None, body_pairs: list[tuple[int, int]] | None, "
-                "stream: int | None) -> Queued | None"),
-            "As run(), without a wait, in the order of a stream, given by its address.")
+        .def("enqueue", &enqueue_arrays, nb::arg("poses").none(), nb::arg("vertices").none(),
+             nb::arg("next_poses").none(), nb::arg("next_vertices").none(), nb::arg("options"),
+             nb::sig("def enqueue(self, poses: object | None, vertices: object | None, next_poses: object | "
+                     "None, next_vertices: object | None, options: tuple[list[tuple[int, int]] | None, int | "
+                     "None]) -> Queued | None"),
+             "As run(), without a wait. options: body pairs, and the address of the stream in whose order it "
+             "runs.")
         .def("update", &update, nb::arg("frame"), nb::arg("next").none(), nb::arg("body_pairs").none(),
              "Runs the last frame with changes: numbers of bodies, an array of their poses or None, and "
              "{number: vertices} or None. next: changes from that frame to its successor.")
@@ -169,7 +165,19 @@ void bind_collider(nb::module_& module) {
         .def("tune", &tune, nb::arg("poses").none(), nb::arg("vertices").none(), nb::arg("seconds"),
              nb::arg("next_poses").none(), nb::arg("next_vertices").none(),
              nb::sig("def tune(self, poses: object | None, vertices: object | None, seconds: float, "
-                     "next_poses: object | None, next_vertices: object | None) -> list | None"))
+                     "next_poses: object | None, next_vertices: object | None) -> list | None"));
+}
+
+} // namespace
+
+void bind_collider(nb::module_& module) {
+    module.def("algorithms", &algorithm_names, "Names of the algorithms that Collider accepts besides auto.");
+    bind_options(module);
+    const auto released = nb::call_guard<nb::gil_scoped_release>();
+    nb::class_<Collider> collider(module, "Collider",
+                                  "Implementation of tandem.Collider, which checks its input.");
+    bind_runs(collider);
+    collider.def(nb::new_(&make), nb::arg("meshes"), nb::arg("options"), nb::arg("owner").none())
         .def("reset", &Collider::reset, released)
         .def_prop_ro("algorithm", &Collider::algorithm, released)
         .def_prop_ro("settings", &Collider::setting_texts, released)

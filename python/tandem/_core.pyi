@@ -192,9 +192,9 @@ class Collider:
         Runs a frame. vertices, next_vertices: a list with one array per deformable body, or {number: array}. Returns None for any other container.
         """
 
-    def enqueue(self, poses: object | None, vertices: object | None, next_poses: object | None, next_vertices: object | None, body_pairs: list[tuple[int, int]] | None, stream: int | None) -> Queued | None:
+    def enqueue(self, poses: object | None, vertices: object | None, next_poses: object | None, next_vertices: object | None, options: tuple[list[tuple[int, int]] | None, int | None]) -> Queued | None:
         """
-        As run(), without a wait, in the order of a stream, given by its address.
+        As run(), without a wait. options: body pairs, and the address of the stream in whose order it runs.
         """
 
     def update(self, frame: tuple[Sequence[int], object | None, object | None], next: tuple[Sequence[int], object | None, object | None] | None, body_pairs: Sequence[tuple[int, int]] | None) -> Answer:

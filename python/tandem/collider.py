@@ -218,7 +218,7 @@ class Collider:
         frame: several devices, `worlds`, decision="exact", gproximity, the paper's data path."""
         pairs = self._pairs_to_walk(body_pairs)
         address = None if stream is None else stream_address(stream)
-        core = self._run(self._core.enqueue, poses, vertices, next_poses, next_vertices, pairs, address)
+        core = self._run(self._core.enqueue, poses, vertices, next_poses, next_vertices, (pairs, address))
         return Queued(core, self._numbering)
 
     def update(

@@ -316,7 +316,6 @@ class Arrays(unittest.TestCase):
             ON.written(poses, frames[0])
             queued = collider.enqueue(poses, stream=stream)
             self.expect_same(queued.collect(), expected[0])
-        ON.finish()
         replay = ON.captured(stream, lambda: collider.enqueue(poses, stream=stream))
         counts = ON.taken(queued.counts)
         with ON.on(stream):

@@ -42,6 +42,12 @@ class Example(ColliderCase):
         ):
             self.assertTrue(self.example(*arguments, code=2).startswith("collide.py: "))
 
+    def test_worlds_of_boxes(self):
+        for device in DEVICES:
+            text = self.example(20, 4, device, script="worlds.py")
+            self.assertRegex(text, r"\d{2,} candidate pairs and \d{2,} contacts in 20 worlds of 4 boxes")
+            self.assertRegex(text, rf"ms per call, [\d.]+ us per world, on {device}")
+
     def test_the_cost_of_a_call_is_printed(self):
         text = self.example(
             "plates:count=2", "--frames", "60:61", "--rounds", 1, "--arrays", "all", script="call_cost.py"

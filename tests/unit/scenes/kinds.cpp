@@ -203,12 +203,33 @@ TEST(ScenesKinds, EveryKindHasADescription) {
         EXPECT_FALSE(kind.models.empty());
         EXPECT_EQ(kind.models.find('\n'), std::string::npos);
         for (const auto& p : kind.parameters) {
-            if (p.name == "refine")
-                EXPECT_EQ(scene.key.find("refine"), std::string::npos) << "keys of old records stay";
+            if (p.name == "refine" || p.name == "worlds")
+                EXPECT_EQ(scene.key.find(p.name), std::string::npos) << "keys of old records stay";
             else
                 EXPECT_THAT(scene.key, HasSubstr(p.name + "=" + p.value));
         }
     }
+}
+
+TEST(ScenesKinds, WorldsOfAPileAreInOneBox) {
+    const auto one = make_scene("pile:bodies=6,worlds=01,frames=1"), five = make_scene("pile:bodies=6,worlds=5,frames=1");
+    EXPECT_EQ(one.key, make_scene("pile:bodies=6,frames=1").key);
+    EXPECT_EQ(one.world_size, 0u);
+    EXPECT_THAT(five.key, HasSubstr("bodies=6,worlds=5,"));
+    EXPECT_EQ(five.bodies.size(), 30u);
+    EXPECT_EQ(five.world_size, 6u);
+    EXPECT_EQ(world_of(five, 17), 2u);
+    EXPECT_TRUE(may_meet(five, 12, 17));
+    EXPECT_FALSE(may_meet(five, 11, 12));
+    const auto reach = [](const Scene& scene) {
+        double most = 0;
+        for (const auto& pose : scene.frame(0).poses)
+            most = std::max(most, pose.translation.lpNorm<Eigen::Infinity>());
+        return most;
+    };
+    EXPECT_LT(reach(five), 2 * reach(one));
+    EXPECT_NE(five.frame(0).poses[0].translation, five.frame(0).poses[6].translation);
+    EXPECT_THAT(failure("pile:bodies=5000,worlds=3000"), HasSubstr("worlds"));
 }
 
 TEST(ScenesKinds, BadSpecifications) {
