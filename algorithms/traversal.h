@@ -142,11 +142,11 @@ private:
     virtual const Bodies* do_bodies() const { return nullptr; }
 
     Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
-    bool first_frame_places_ = false;      ///< the first frame decides the origin
-    bool is_placed_ = true;                ///< the origin is fixed until reset()
-    const Scene* scene_ = nullptr;         ///< the argument of prepare()
+    bool first_frame_places_ = false;       ///< the first frame decides the origin
+    bool is_placed_ = true;                 ///< the origin is fixed until reset()
+    const Scene* scene_ = nullptr;          ///< the argument of prepare()
     std::vector<std::uint32_t> deformable_; ///< its deformable bodies
-    std::shared_ptr<const Scene> centred_; ///< what the devices have in its place; null: the same
+    std::shared_ptr<const Scene> centred_;  ///< what the devices have in its place; null: the same
 };
 
 /// The settings with the contact rule and the decision to rely on, where neither is given.

@@ -32,8 +32,8 @@ template<class Name>
 void check_capacity(const DeviceRows& rows, std::size_t numbers, const Name& name) {
     const auto bytes = numbers * bytes_of_number(rows);
     if (rows.buffer.bytes() < bytes)
-        throw InputError(fmt::format("{}: a buffer of {} bytes is too small for {} numbers of {} bytes", name(),
-                                     rows.buffer.bytes(), numbers, bytes_of_number(rows)));
+        throw InputError(fmt::format("{}: a buffer of {} bytes is too small for {} numbers of {} bytes",
+                                     name(), rows.buffer.bytes(), numbers, bytes_of_number(rows)));
 }
 
 } // namespace
@@ -51,7 +51,8 @@ Pose pose_of_row(const double* row, std::size_t body) {
 }
 
 void check_fits(const Scene& scene, std::span<const std::uint32_t> deformable, const DeviceFrame& frame) {
-    if (frame.poses.buffer) check_capacity(frame.poses, scene.bodies.size() * pose_numbers, [] { return "poses"; });
+    if (frame.poses.buffer)
+        check_capacity(frame.poses, scene.bodies.size() * pose_numbers, [] { return "poses"; });
     if (frame.deformed.size() != scene.bodies.size())
         throw InputError(fmt::format("the frame has {} entries of vertices for {} bodies; give one per body",
                                      frame.deformed.size(), scene.bodies.size()));

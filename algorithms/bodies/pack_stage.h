@@ -32,7 +32,7 @@ private:
 
     const Bodies& bodies_;
     LaunchShape shape_;
-    double limit_; ///< largest magnitude of a coordinate
+    double limit_;                          ///< largest magnitude of a coordinate
     std::vector<std::uint32_t> deformable_; ///< bodies
     KernelOf<kernels::pack_frame::PackPoses> poses_;
     KernelOf<kernels::pack_frame::PackVertices> vertices_;

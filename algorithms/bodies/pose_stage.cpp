@@ -54,13 +54,13 @@ void PoseStage::launch(const Frame& frame, bool all) {
             }
         };
         const auto bodies = frame.poses.size();
-        constexpr std::size_t part = 4096; // bodies that a processor copies in a few times the start of a loop
+        constexpr std::size_t part =
+            4096; // bodies that a processor copies in a few times the start of a loop
         if (bodies <= part)
             copy(0, bodies);
         else
-            parallel_for((bodies + part - 1) / part, [&](std::size_t i) {
-                copy(i * part, std::min(bodies, (i + 1) * part));
-            });
+            parallel_for((bodies + part - 1) / part,
+                         [&](std::size_t i) { copy(i * part, std::min(bodies, (i + 1) * part)); });
     }
     {
         const StageScope scope(device, Stage::write);

@@ -23,7 +23,7 @@ constexpr std::array<const Parameter*, 8> own{&chunk_bytes, &leaves,  &seed_thre
 const std::vector<Preset> all_presets{
     {"grouped",
      "our schedule: work-groups share the walks of their seeds; everything resident, one wait per frame",
-     {parameters::broad(Broad::device)},
+     {parameters::broad(Broad::device), parameters::builder(Builder::sah)},
      "resident"},
     {"paper",
      "the paper's schedule (item, both children, threshold 10^7) with everything resident",

@@ -97,7 +97,7 @@ std::vector<Assignment> published_on(int group_count, int local_size, int local_
 const std::vector<Preset> presets{
     {"fair",
      "all body pairs at once, found on the device, refill inside a launch, parallel balance",
-     {parameters::broad(Broad::device)}},
+     {parameters::broad(Broad::device), parameters::builder(Builder::sah)}},
     {"published",
      "the paper's release as it would run on this device, its queue array included",
      published({sizes_by(QueueSizing::release), queue_bytes(whole_array), balance_group_size(1024)}),

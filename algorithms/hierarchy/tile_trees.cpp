@@ -99,8 +99,8 @@ void TileTrees::lay_out() {
     for (const auto& first : first_tiles_) is_top_[first.size() - 1] = true;
 }
 
-/// A group has no more teams than any unit has tiles: bodies of two tiles are refitted in twice as many groups
-/// at once as with four teams.
+/// A group has no more teams than any unit has tiles: bodies of two tiles are refitted in twice as many
+/// groups at once as with four teams.
 void TileTrees::limit_group_size() {
     std::uint32_t most = 1;
     for (std::uint32_t body = 0; body < bodies_.count(); ++body)

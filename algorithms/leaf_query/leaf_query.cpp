@@ -14,7 +14,8 @@ namespace {
 const std::vector<Preset> all_presets{
     {"resident",
      "everything resident, body pairs included, one wait per frame",
-     {parameters::broad(Broad::device), parameters::builder(Builder::sah)}}};
+     // More groups than run at once: queries take unlike times, and a group that ends makes room for another.
+     {parameters::broad(Broad::device), parameters::builder(Builder::sah), parameters::work_items(8192)}}};
 
 constexpr std::array<const Parameter*, 2> own{&leaf_query_parameters::tree, &leaf_query_parameters::rebuild};
 

@@ -17,7 +17,14 @@ def box(cells=2):
     vertices = numpy.stack(numpy.meshgrid(side, side, side, indexing="ij"), axis=-1).reshape(-1, 3)
     steps = numpy.array([(cells + 1) ** 2, cells + 1, 1])
     first = (numpy.indices([cells] * 3).reshape(3, -1).T @ steps)[:, None]
-    paths = [(0, 1, 2), (1, 2, 0), (2, 0, 1), (0, 2, 1), (2, 1, 0), (1, 0, 2)]  # from a corner to the opposite one
+    paths = [
+        (0, 1, 2),
+        (1, 2, 0),
+        (2, 0, 1),
+        (0, 2, 1),
+        (2, 1, 0),
+        (1, 0, 2),
+    ]  # from a corner to the opposite one
     corners = [[0, *numpy.cumsum(steps[list(path)])] for path in paths]
     for mirrored in corners[3:]:
         mirrored[1], mirrored[2] = mirrored[2], mirrored[1]
@@ -37,7 +44,9 @@ def main(worlds=1024, bodies=16, device="host"):
     rows = poses(worlds, bodies, numpy.random.default_rng(1))
     answer = collider.run(rows)
     world = answer.contacts().pairs[:, 0]
-    print(f"{answer.count} candidate pairs and {answer.contact_count} contacts in {worlds} worlds of {bodies} boxes")
+    print(
+        f"{answer.count} candidate pairs and {answer.contact_count} contacts in {worlds} worlds of {bodies} boxes"
+    )
     print("contacts of the first worlds:", *numpy.bincount(world, minlength=worlds)[:8])
     times = []
     for _ in range(20):

@@ -212,7 +212,8 @@ TEST(ScenesKinds, EveryKindHasADescription) {
 }
 
 TEST(ScenesKinds, WorldsOfAPileAreInOneBox) {
-    const auto one = make_scene("pile:bodies=6,worlds=01,frames=1"), five = make_scene("pile:bodies=6,worlds=5,frames=1");
+    const auto one = make_scene("pile:bodies=6,worlds=01,frames=1"),
+               five = make_scene("pile:bodies=6,worlds=5,frames=1");
     EXPECT_EQ(one.key, make_scene("pile:bodies=6,frames=1").key);
     EXPECT_EQ(one.world_size, 0u);
     EXPECT_THAT(five.key, HasSubstr("bodies=6,worlds=5,"));
