@@ -18,7 +18,7 @@ std::vector<std::uint32_t> rows_of(const std::vector<Limit>& limits) {
 } // namespace
 
 QueuedStage::QueuedStage(const Bodies& bodies, LaunchShape shape, std::shared_ptr<const AnswerBuffers> answer,
-                         bool stores, std::vector<Limit> limits)
+                         bool stores)
     : bodies_(bodies), shape_(shape), answer_(std::move(answer)) {
     auto& device = bodies.device();
     auto defines = row_defines(bodies.geometry(), shape.group_size);
@@ -29,16 +29,18 @@ QueuedStage::QueuedStage(const Bodies& bodies, LaunchShape shape, std::shared_pt
         compile_kernel(device, name_, defines);
         frame_.pair_capacity = answer_->pairs.capacity();
         frame_.pairs = device.allocate(frame_.pair_capacity * sizeof(Pair), "pairs of a queued frame");
-        limits.push_back({STATUS_PAIRS, answer_->pairs.capacity()});
     }
-    if (answer_->contacts.capacity() > 0) {
-        frame_.contact_capacity = answer_->contacts.capacity();
-        frame_.contact_ids = answer_->contacts.buffer(contact_ids);
-        frame_.contact_values = answer_->contacts.buffer(contact_values);
-        limits.push_back({STATUS_CONTACTS, answer_->contacts.capacity()});
-    }
+    if (answer_->contacts.capacity() == 0) return;
+    frame_.contact_capacity = answer_->contacts.capacity();
+    frame_.contact_ids = answer_->contacts.buffer(contact_ids);
+    frame_.contact_values = answer_->contacts.buffer(contact_values);
+}
+
+void QueuedStage::set_limits(std::vector<Limit> limits) {
+    if (frame_.pairs) limits.push_back({STATUS_PAIRS, answer_->pairs.capacity()});
+    if (frame_.contact_ids) limits.push_back({STATUS_CONTACTS, answer_->contacts.capacity()});
     limit_count_ = static_cast<std::uint32_t>(limits.size());
-    limits_ = uploaded(device, bytes_of(rows_of(limits)), "limits of a queued frame");
+    limits_ = uploaded(bodies_.device(), bytes_of(rows_of(limits)), "limits of a queued frame");
 }
 
 void QueuedStage::launch(const Status& status) const {

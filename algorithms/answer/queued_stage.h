@@ -17,16 +17,16 @@ struct Limit {
 /// Ends frames that the host does not wait for: names their pairs, and flags what does not fit.
 class QueuedStage {
 public:
-    /// `limits`: of the other buffers of the frame. `stores`: whether the frame stores pairs. Throws
-    /// OutOfMemory.
+    /// `stores`: whether the frame stores pairs. Throws OutOfMemory.
     QueuedStage(const Bodies& bodies, LaunchShape shape, std::shared_ptr<const AnswerBuffers> answer,
-                bool stores, std::vector<Limit> limits);
+                bool stores);
+    /// Sets the limits of the frame's other buffers; required before launch(). Throws OutOfMemory.
+    void set_limits(std::vector<Limit> limits);
 
     /// Enqueues the end of a frame.
     void launch(const Status& status) const;
     /// The frame that launch() ends, without its origin and the memory of other stages.
     const QueuedFrame& frame() const { return frame_; }
-    const std::shared_ptr<const AnswerBuffers>& answer() const { return answer_; }
     /// Waits, and reads the counts of the last frame: QUEUED_WORDS words.
     std::array<std::uint32_t, QUEUED_WORDS> read() const;
 

@@ -54,7 +54,7 @@ ContactStage::ContactStage(const Bodies& bodies, const ContactSettings& settings
 }
 
 /// Reserves lists for `pairs` pairs, or for fewer when memory is short, which takes more launches.
-void ContactStage::reserve(std::uint64_t pairs) {
+void ContactStage::reserve_lists(std::uint64_t pairs) {
     for (auto rows = std::min(pairs, most_waiting); rows > waiting_.capacity(); rows /= 2) {
         try {
             waiting_.reserve(rows);
@@ -62,6 +62,11 @@ void ContactStage::reserve(std::uint64_t pairs) {
             if (rows <= least_waiting) throw;
         }
     }
+}
+
+void ContactStage::reserve(std::uint64_t pairs) {
+    if (decision_) decision_->reserve(pairs);
+    if (generate_) reserve_lists(pairs);
 }
 
 /// More groups than run at once where a GPU has many pairs for each: pairs take unlike times, and a group
@@ -148,7 +153,7 @@ void ContactStage::launch(const AnswerBuffers& answer, std::uint64_t first, std:
                  status);
         return;
     }
-    reserve(end - first);
+    reserve_lists(end - first);
     bool waiting = status.counter(STATUS_WAITING) != 0; // pairs of an earlier launch
     for (auto from = first; from < end; from += waiting_.capacity()) {
         if (waiting) device.clear(status.buffer(), STATUS_WAITING_WORDS * 4, STATUS_WAITING * 4);

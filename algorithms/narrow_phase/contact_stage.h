@@ -33,8 +33,11 @@ public:
     /// Contacts are appended to those that the status already counts. Throws OutOfMemory.
     void launch(const AnswerBuffers& answer, std::uint64_t first, std::uint64_t end, const Status& status);
 
-private:
+    /// Reserves what launches of at most `pairs` pairs need. Throws OutOfMemory.
     void reserve(std::uint64_t pairs);
+
+private:
+    void reserve_lists(std::uint64_t pairs);
     LaunchShape apart_shape() const;
     void find_meeting(const AnswerBuffers& answer, std::uint32_t first, std::uint32_t end,
                       const Status& status);

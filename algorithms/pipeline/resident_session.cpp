@@ -192,7 +192,7 @@ FrameResult ResidentSession::run_input(const Input& input) {
 }
 
 /// The limits of all buffers but those of the answer.
-std::vector<Limit> ResidentSession::limits(const Input& input) const {
+std::vector<Limit> ResidentSession::limits() const {
     const auto& settings = pipeline_.settings;
     if (settings[parameters::decision] == DecisionPrecision::exact && pipeline_.contacts)
         throw InputError(
@@ -203,52 +203,70 @@ std::vector<Limit> ResidentSession::limits(const Input& input) const {
         throw InputError(
             "this algorithm's schedule needs the host in every frame; choose tiled for enqueue(), "
             "or call run()");
-    if (!input.body_pairs) limits->push_back({STATUS_BODY_PAIRS, pipeline_.body_pairs->rows().capacity()});
+    limits->push_back({STATUS_BODY_PAIRS, pipeline_.body_pairs->rows().capacity()});
     return *std::move(limits);
 }
 
-/// Runs the frame once, so that every buffer exists and every kernel is chosen, and keeps what its commands
-/// use.
+/// Runs the frame as run() does, so that every buffer of frames of its kind exists, and every kernel.
 void ResidentSession::prepare_queued(const Input& input) {
-    const auto answer = pipeline_.answers->take();
-    begin(input, *answer);
-    if (pipeline_.contacts) pipeline_.contacts->expect(pipeline_.status.counter(STATUS_PAIRS));
-    pipeline_.stages.walker->grow(pipeline_.status);
-    auto queued = std::make_unique<QueuedStage>(*pipeline_.bodies, pipeline_.shape, answer,
-                                                has_pairs(pipeline_.output), limits(input));
-    const auto memory =
+    if (!queued_) queued_.emplace(pipeline_.answers->take());
+    if (input.device != nullptr && !pack_)
+        pack_ = std::make_unique<PackStage>(*pipeline_.bodies, pipeline_.shape);
+    const auto& answer = *queued_->answer;
+    begin(input, answer);
+    pipeline_.stages.walker->grow(pipeline_.status); // it also expects as many pairs in the next frame
+    if (pipeline_.contacts) {
+        pipeline_.contacts->expect(pipeline_.status.counter(STATUS_PAIRS));
+        pipeline_.contacts->reserve(answer.pairs.capacity());
+    }
+    if (!queued_->end)
+        queued_->end = std::make_unique<QueuedStage>(*pipeline_.bodies, pipeline_.shape, queued_->answer,
+                                                     has_pairs(pipeline_.output));
+    queued_->end->set_limits(limits());
+    queued_->kinds |= input.kind();
+    queued_->memory.reset();
+}
+
+/// Enqueues the frame. Returns what holds the memory that its commands use.
+std::shared_ptr<const void> ResidentSession::hold_and_submit(const Input& input) {
+    const auto held =
         std::make_shared<std::pair<std::shared_ptr<const AnswerBuffers>, std::vector<Buffer>>>();
-    memory->first = answer;
-    pipeline_.device.hold_buffers(&memory->second);
+    held->first = queued_->answer;
+    pipeline_.device.hold_buffers(&held->second);
     try {
-        submit(input, *answer, [&] { queued->launch(pipeline_.status); });
+        submit(input, *queued_->answer, [&] { queued_->end->launch(pipeline_.status); });
     } catch (...) {
         pipeline_.device.hold_buffers(nullptr);
         throw;
     }
     pipeline_.device.hold_buffers(nullptr);
-    queued_ = std::move(queued);
-    queued_memory_ = memory;
+    return held;
 }
 
 QueuedFrame ResidentSession::do_enqueue(const FrameInput* host, const DeviceFrameInput* device,
                                         std::optional<std::span<const BodyPair>> body_pairs) {
-    if (device != nullptr && !pack_) pack_ = std::make_unique<PackStage>(*pipeline_.bodies, pipeline_.shape);
     const Input input{.host = host, .device = device, .body_pairs = body_pairs};
-    if (!queued_ || stale_) {
-        if (pipeline_.device.is_captured()) refuse_capture();
+    const bool is_captured = pipeline_.device.is_captured();
+    const bool has_room = !body_pairs || body_pairs->size() <= pipeline_.body_pairs->rows().capacity();
+    if (!queued_ || stale_ || (queued_->kinds & input.kind()) == 0 || !has_room) {
+        if (is_captured) refuse_capture();
+        limits(); // refuses before anything runs
         prepare_queued(input);
-    } else {
-        submit(input, *queued_->answer(), [&] { queued_->launch(pipeline_.status); });
     }
-    auto frame = queued_->frame();
-    frame.memory = queued_memory_;
+    auto frame = queued_->end->frame();
+    if (is_captured || !queued_->memory) { // a captured frame may take other kernels than the one prepared
+        frame.memory = hold_and_submit(input);
+        if (!is_captured) queued_->memory = frame.memory;
+    } else {
+        submit(input, *queued_->answer, [&] { queued_->end->launch(pipeline_.status); });
+        frame.memory = queued_->memory;
+    }
     return frame;
 }
 
 std::optional<FrameResult> ResidentSession::do_collect() {
-    if (!queued_) return Session::do_collect();
-    const auto words = queued_->read();
+    if (!queued_ || !queued_->end) return Session::do_collect();
+    const auto words = queued_->end->read();
     const auto number = [&](std::size_t word) { return words[word] | std::uint64_t{words[word + 1]} << 32; };
     if (number(QUEUED_FLAG) != 0) return std::nullopt;
     FrameResult result;
@@ -259,8 +277,7 @@ std::optional<FrameResult> ResidentSession::do_collect() {
     if (pipeline_.output == Output::digest)
         result.summed = Digest{result.count, number(QUEUED_DIGEST_A), number(QUEUED_DIGEST_B)};
     if (has_pairs(pipeline_.output))
-        result.parts.push_back(
-            device_part(pipeline_.tools, queued_->answer(), result.count, result.contacts));
+        result.parts.push_back(device_part(pipeline_.tools, queued_->answer, result.count, result.contacts));
     return result;
 }
 

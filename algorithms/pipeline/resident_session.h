@@ -51,6 +51,9 @@ private:
         const FrameInput* host = nullptr;
         const DeviceFrameInput* device = nullptr;
         std::optional<std::span<const BodyPair>> body_pairs{};
+
+        /// A bit for each combination of memory and origin of the body pairs.
+        unsigned kind() const { return 1u << (2 * (device != nullptr ? 1 : 0) + (body_pairs ? 1 : 0)); }
     };
 
     void do_reset() override;
@@ -81,8 +84,9 @@ private:
     template<class End>
     void submit(const Input& input, const AnswerBuffers& answer, const End& end);
     void begin(const Input& input, const AnswerBuffers& answer);
-    std::vector<Limit> limits(const Input& input) const;
+    std::vector<Limit> limits() const;
     void prepare_queued(const Input& input);
+    std::shared_ptr<const void> hold_and_submit(const Input& input);
     bool grow(AnswerBuffers& answer);
     FrameResult run_whole(const Input& input);
     FrameResult run_parts(const Input& input);
@@ -98,9 +102,15 @@ private:
     bool is_uploaded_ = false;        ///< upload_vertices() has uploaded the next frame's vertices
     bool has_received_ = false;       ///< set_received() has bodies
 
-    /// Of enqueue(); null before the first call, and after a frame that has grown buffers.
-    std::unique_ptr<QueuedStage> queued_;
-    std::shared_ptr<const void> queued_memory_; ///< QueuedFrame::memory
+    /// What frames of enqueue() share.
+    struct QueuedFrames {
+        explicit QueuedFrames(std::shared_ptr<const AnswerBuffers> buffers) : answer(std::move(buffers)) {}
+        std::shared_ptr<const AnswerBuffers> answer;
+        std::unique_ptr<QueuedStage> end;
+        unsigned kinds = 0;                 ///< prepared ones: bits of Input::kind()
+        std::shared_ptr<const void> memory; ///< of the last frame that was prepared; null: not known yet
+    };
+    std::optional<QueuedFrames> queued_; ///< none before the first, and after a frame that has grown buffers
 };
 
 } // namespace tandem

@@ -125,15 +125,50 @@ TEST_P(Queued, FramesThatDoNotFitAreFlagged) {
         }
 }
 
+/// Each kind of frame prepares itself, whatever came before, and later lists of body pairs may be longer.
+TEST_P(Queued, EveryKindOfFrameMayFollowEveryOther) {
+    const auto scene = crowd(3, 12, 1.5);
+    const Rows rows(scene.frame(0), false);
+    const auto device_frame = rows.uploaded_to(on);
+    const auto pairs = all_pairs(scene);
+    const auto other = prepare("chunked", scene, {});
+    const auto right = other->run(rows.host);
+    const auto right_few = other->run(rows.host, std::span(pairs).first(5));
+    for (std::size_t first = 0; first < 5; ++first)
+        for (std::size_t second = 0; second < 5; ++second) {
+            SCOPED_TRACE(fmt::format("{} then {}", first, second));
+            const auto session = prepare("chunked", scene, {{"broad", "tight"}, {"body_pair_capacity", "1"}});
+            const auto enqueue = [&](std::size_t kind) {
+                const auto given = std::span(pairs).first(kind == 4 ? 5 : pairs.size());
+                const FrameView view = kind % 2 == 0 ? FrameView(rows.host) : FrameView(device_frame);
+                kind < 2 ? session->enqueue(view) : session->enqueue(view, given);
+                auto result = session->collect();
+                if (!result) { // the pairs that the device finds do not fit into one row
+                    EXPECT_EQ(kind, 1u);
+                    session->run(view);
+                    session->enqueue(view);
+                    result = session->collect();
+                }
+                ASSERT_TRUE(result);
+                EXPECT_EQ(result->digest(), (kind == 4 ? right_few : right).digest());
+                EXPECT_EQ(result->contact_digest(), (kind == 4 ? right_few : right).contact_digest());
+            };
+            enqueue(first);
+            enqueue(second);
+        }
+}
+
 TEST_P(Queued, FlawedFramesAreFlaggedAndTheNextOneIsRight) {
     const auto scene = crowd(3, 12, 1.5);
     const auto session = prepare("tiled", scene, {});
     const Rows rows(scene.frame(0), false);
     auto flawed = rows;
     flawed.poses[7 * 3] = std::nan("");
+    EXPECT_THAT(message_of([&] { session->collect(); }), HasSubstr("call enqueue() first"));
     EXPECT_THAT(message_of([&] { session->enqueue(flawed.uploaded_to(on)); }),
                 HasSubstr("poses: row 3 is not finite"))
         << "the first call waits";
+    EXPECT_THAT(message_of([&] { session->collect(); }), HasSubstr("call enqueue() first"));
     const auto right = session->run(rows.host);
     session->enqueue(rows.uploaded_to(on));
     const auto frame = session->enqueue(flawed.uploaded_to(on));

@@ -131,7 +131,14 @@ TEST_F(CudaFrames, AreCapturedIntoAGraphOfTheApplication) {
         return std::pair(message, graph);
     };
     const auto enqueue = [&] { session->enqueue(given); };
-    EXPECT_THAT(captured(enqueue).first, testing::HasSubstr("enqueue a frame before the capture"));
+    const auto is_refused = [&] {
+        EXPECT_THAT(captured(enqueue).first, testing::HasSubstr("enqueue a frame before the capture"));
+    };
+    is_refused();
+    session->enqueue(scene.frame(0)); // a frame of another kind does not prepare it
+    is_refused();
+    session->enqueue(given, all_pairs(scene));
+    is_refused();
     for (int i = 0; i < 3; ++i) enqueue(); // prepares; its own graph is then known
     const auto waits = entry_of_stub<unsigned long()>("stub_waits");
     const auto launches = entry_of_stub<unsigned long()>("stub_graph_launches");
