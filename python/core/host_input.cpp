@@ -2,6 +2,8 @@
 #include "python/core/host_input.h"
 
 #include "algorithms/bodies/range.h"
+#include "base/error.h"
+#include "base/parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -60,7 +62,16 @@ void HostInput::set_poses(const FrameArrays& arrays) {
     const auto* const rows = static_cast<const double*>(arrays.poses->data);
     for (std::size_t i = 0; i < arrays.posed.size(); ++i) set_pose(arrays.posed[i], rows + 7 * i);
     if (!arrays.posed.empty()) return;
-    for (std::size_t body = 0; body < scene_.bodies.size(); ++body) set_pose(body, rows + 7 * body);
+    constexpr std::size_t part = 2048; // bodies whose conversion takes longer than to start a parallel loop
+    const auto bodies = scene_.bodies.size();
+    try {
+        parallel_for((bodies + part - 1) / part, [&](std::size_t i) {
+            for (auto body = i * part; body < std::min(bodies, (i + 1) * part); ++body)
+                set_pose(body, rows + 7 * body);
+        });
+    } catch (const InputError&) { // of any row; the message names the first
+        for (std::size_t body = 0; body < bodies; ++body) set_pose(body, rows + 7 * body);
+    }
 }
 
 void HostInput::set_pose(std::size_t body, const double* row) {
@@ -68,7 +79,8 @@ void HostInput::set_pose(std::size_t body, const double* row) {
     pose = {};
     if (scene_.bodies[body].deformable) return;
     pose = pose_of_row(row, body);
-    for (const double x : pose.translation) out_of_range_ += !(std::abs(x) <= limit_);
+    for (const double x : pose.translation)
+        if (!(std::abs(x) <= limit_)) ++out_of_range_;
 }
 
 void HostInput::set_vertices(std::size_t body, const GivenRows& vertices) {

@@ -4,6 +4,7 @@
 #include "python/core/frame_arrays.h"
 
 #include <array>
+#include <atomic>
 #include <memory>
 
 namespace tandem::python {
@@ -38,7 +39,7 @@ private:
     double limit_; ///< largest valid coordinate
     /// The last frame and one before it. Their memory is reused, unless an answer holds them.
     std::array<std::shared_ptr<Frame>, 2> frames_;
-    std::size_t out_of_range_ = 0; ///< number of coordinates of the last frame beyond limit_
+    std::atomic<std::size_t> out_of_range_ = 0; ///< number of coordinates of the last frame beyond limit_
 };
 
 } // namespace tandem::python
