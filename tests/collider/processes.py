@@ -95,13 +95,14 @@ class Signals(ColliderCase):
                     )
 
     def test_end_tune(self):
-        collider = tandem.Collider(self.meshes, algorithm="auto")
-        self.assertTrue(
-            any(self.ends(collider, lambda: collider.tune(POSES, seconds=2.0**i)) for i in range(-3, 4))
-        )
+        """Of many bodies in one place, so that it takes longer than the 100 ms between two looks at signals."""
+        collider = tandem.Collider(self.meshes, algorithm="auto", bodies=[0] * 40)
+        self.assertTrue(any(self.ends(collider, lambda: collider.tune(seconds=2.0**i)) for i in range(-3, 4)))
         self.assertEqual(
-            collider.run(POSES).digest(),
-            tandem.Collider(self.meshes, collider.algorithm, **collider.settings).run(POSES).digest(),
+            collider.run().digest(),
+            tandem.Collider(self.meshes, collider.algorithm, bodies=[0] * 40, **collider.settings)
+            .run()
+            .digest(),
         )
 
     def test_answers_end_while_another_thread_runs(self):
