@@ -25,7 +25,7 @@ struct DeviceFrame {
     /// identity.
     DeviceRows poses;
     /// One entry per body. Deformable bodies: x y z of each vertex in world coordinates, in the order of the
-    /// mesh. Other bodies: empty.
+    /// mesh. Other bodies: empty. No entries at all: no body is deformable.
     std::vector<DeviceRows> deformed;
     std::vector<std::vector<std::uint32_t>> skipped{}; ///< see Frame::skipped; in the host's memory
 };

@@ -53,7 +53,7 @@ Pose pose_of_row(const double* row, std::size_t body) {
 void check_fits(const Scene& scene, std::span<const std::uint32_t> deformable, const DeviceFrame& frame) {
     if (frame.poses.buffer)
         check_capacity(frame.poses, scene.bodies.size() * pose_numbers, [] { return "poses"; });
-    if (frame.deformed.size() != scene.bodies.size())
+    if (frame.deformed.size() != scene.bodies.size() && !(frame.deformed.empty() && deformable.empty()))
         throw InputError(fmt::format("the frame has {} entries of vertices for {} bodies; give one per body",
                                      frame.deformed.size(), scene.bodies.size()));
     for (const auto body : deformable)

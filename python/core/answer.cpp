@@ -33,17 +33,24 @@ Answer::~Answer() {
     frame_.reset();
 }
 
+void Answer::check_current() const {
+    if (is_queued_) collider_->check_queued(number_);
+}
+
 Digest Answer::digest() const {
     const auto lock = collider_->lock();
+    check_current();
     return result_.digest();
 }
 
 Digest Answer::contact_digest() const {
     const auto lock = collider_->lock();
+    check_current();
     return result_.contact_digest();
 }
 
 void Answer::check_pairs_kept() const {
+    check_current();
     const auto& settings = collider_->settings();
     if (!has_pairs(settings[parameters::output]))
         throw InputError(fmt::format("setting output={} keeps no pairs; make the collider with output=pairs",

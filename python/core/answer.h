@@ -9,12 +9,14 @@ namespace tandem::python {
 /// interpreter's lock.
 class Answer {
 public:
-    Answer(std::shared_ptr<Collider> collider, CollideRun run)
+    /// `queued`: of a frame of enqueue(), whose memory the next such frame overwrites.
+    Answer(std::shared_ptr<Collider> collider, CollideRun run, bool queued = false)
         : collider_(std::move(collider)),
           result_(std::move(run.result)),
           seconds_(run.seconds),
           frame_(std::move(run.frame)),
-          number_(run.number) {}
+          number_(run.number),
+          is_queued_(queued) {}
     Answer(const Answer&) = delete;
     Answer& operator=(const Answer&) = delete;
     ~Answer();
@@ -42,7 +44,9 @@ public:
     const OnDevice& on_device() const;
 
 private:
-    /// Throws InputError if the settings keep no pairs. Needs the collider's lock.
+    /// Throws InputError if a later frame has overwritten the answer. Needs the collider's lock.
+    void check_current() const;
+    /// The same, and if the settings keep no pairs.
     void check_pairs_kept() const;
 
     std::shared_ptr<Collider> collider_;
@@ -50,6 +54,7 @@ private:
     double seconds_;
     std::shared_ptr<const Frame> frame_; ///< null if it was in memory of the device
     std::uint64_t number_;               ///< CollideRun::number
+    bool is_queued_;
     mutable std::optional<OnDevice> on_device_;
 };
 

@@ -218,7 +218,7 @@ std::pair<QueuedFrame, std::uint64_t> Collider::enqueue(const Input& input, std:
         if (stream) device.follow(*stream);
         const auto enqueued = [&](const auto& frames) {
             if (!session_) choose_for(frames, seconds_of_choosing);
-            ++frames_;
+            last_queued_ = ++frames_;
             const auto view = FrameView(frames).checked();
             return input.body_pairs ? session_->enqueue(view, *input.body_pairs) : session_->enqueue(view);
         };
@@ -231,16 +231,20 @@ std::pair<QueuedFrame, std::uint64_t> Collider::enqueue(const Input& input, std:
     });
 }
 
+void Collider::check_queued(std::uint64_t number) const {
+    if (number != last_queued_)
+        throw InputError(
+            "the answer of collect() is in memory that a later enqueue() has overwritten; read each "
+            "answer before the next frame, or call run()");
+}
+
 std::optional<CollideRun> Collider::collect(std::uint64_t number) {
     const auto own = lock();
-    if (number != frames_ || !session_)
-        throw InputError(
-            "collect() needs the last frame, and a later one has overwritten this one; collect each "
-            "frame before the next");
+    check_queued(number);
     return with_signals([&]() -> std::optional<CollideRun> {
         auto result = session_->collect();
         if (!result) return std::nullopt;
-        return CollideRun{*std::move(result), 0, {}, frames_};
+        return CollideRun{*std::move(result), 0, {}, number};
     });
 }
 

@@ -58,7 +58,9 @@ public:
     /// Returns its number, too. Throws as run(), and InputError where the host takes part in frames
     /// (Session::enqueue).
     std::pair<QueuedFrame, std::uint64_t> enqueue(const Input& input, std::optional<void*> stream);
-    /// Session::collect() of frame `number`. Throws InputError if a later frame has overwritten it.
+    /// Throws InputError if a later frame of enqueue() has overwritten frame `number`. Needs the lock.
+    void check_queued(std::uint64_t number) const;
+    /// Session::collect() of frame `number`. Throws as check_queued().
     std::optional<CollideRun> collect(std::uint64_t number);
     /// Algorithm auto: times the candidates on that frame and selects the fastest for later runs. Throws
     /// InputError for another algorithm.
@@ -129,6 +131,7 @@ private:
     std::optional<HostInput> host_input_, next_host_input_; ///< of frames, and of their successors
     std::optional<DeviceInput> device_input_;
     std::uint64_t frames_ = 0;         ///< number of frames that sessions began to run
+    std::uint64_t last_queued_ = 0;    ///< that of the last frame of enqueue()
     bool is_last_on_device_ = false;   ///< whether the last frame was in memory of the device
     std::unique_ptr<Session> session_; ///< null until an algorithm is chosen
     std::recursive_mutex mutex_;

@@ -23,7 +23,7 @@ Queued::~Queued() {
 
 std::unique_ptr<Answer> Queued::collect() const {
     auto run = collider_->collect(number_);
-    return run ? std::make_unique<Answer>(collider_, *std::move(run)) : nullptr;
+    return run ? std::make_unique<Answer>(collider_, *std::move(run), true) : nullptr;
 }
 
 namespace {

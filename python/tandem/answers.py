@@ -139,7 +139,7 @@ class Queued:
     @property
     def counts(self) -> Any:
         """(1, 6) int64: a flag (0: the answer is complete), candidate pairs, contacts and body pairs, and with
-        output="digest" the sums of the digest. Bits of the flag: NO_ROOM, a buffer is too small, and rows beyond
+        output="digest" the sums of the digest. With a flag, counts of what depends on missing rows are too small. Bits of the flag: NO_ROOM, a buffer is too small, and rows beyond
         it are missing; FLAWED, poses or vertices on the device are out of range, such as not a number; EXCEEDED,
         an error of tandem. run() of the same frame then finds the whole answer, or raises what is wrong."""
         return self._core.counts
@@ -168,8 +168,8 @@ class Queued:
         return numpy.array(self._core.origin)
 
     def collect(self) -> Answer | None:
-        """Waits for the frame, and returns its answer over the same memory: read it before the next frame. None
-        if the flag is set. Its `seconds` are 0. Raises ValueError if the collider has had a later frame."""
+        """Waits for the frame, and returns its answer over the same memory. None if the flag is set. The next
+        enqueue() overwrites the answer: then this and the answer's methods raise ValueError. Its `seconds` are 0."""
         core = self._core.collect()
         return None if core is None else Answer(core, self._numbering)
 

@@ -215,7 +215,7 @@ class Collider:
         calls whose arrays are all on the collider's GPU can be captured in a CUDA graph (torch.cuda.graph,
         CuPy's Stream.begin_capture), which then reads the same arrays in every replay; the captured frame has
         the grids for as much work as the frame before it. Raises ValueError where the host takes part in a
-        frame: several devices, `worlds`, decision="exact", gproximity, the paper's data path."""
+        frame: several devices, decision="exact", gproximity, the paper's data path."""
         pairs = self._pairs_to_walk(body_pairs)
         address = None if stream is None else stream_address(stream)
         core = self._run(self._core.enqueue, poses, vertices, next_poses, next_vertices, (pairs, address))

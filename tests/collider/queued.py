@@ -66,8 +66,30 @@ class Queued(ColliderCase):
             self.assertIsNone(queued.collect())
             right = collider.run(POSES)
             self.assertEqual(collider.enqueue(POSES).collect().digest(), right.digest())
-            with self.assertRaisesRegex(ValueError, "a later one has overwritten this one"):
+            with self.assertRaisesRegex(ValueError, "a later enqueue\\(\\) has overwritten"):
                 queued.collect()
+
+    def test_an_answer_that_is_overwritten_refuses(self):
+        collider = self.collider(device="host")
+        right = collider.run(POSES)
+        answer = collider.enqueue(POSES).collect()
+        collider.run(POSES)  # does not overwrite it
+        self.assertTrue((answer.pairs() == right.pairs()).all())
+        collider.enqueue(POSES)
+        for call in (answer.pairs, answer.contacts, answer.digest, answer.contact_digest, answer.meeting):
+            with self.assertRaisesRegex(ValueError, "a later enqueue\\(\\) has overwritten"):
+                call()
+        self.assertEqual(answer.count, right.count)
+
+    def test_worlds(self):
+        poses = numpy.array([POSES, POSES, POSES])
+        poses[1, 1, 0] += 50
+        collider = self.collider(device="host", worlds=3)
+        right = collider.run(poses)
+        queued = collider.enqueue(poses)
+        self.assertTrue((queued.collect().pairs() == right.pairs()).all())
+        rows = numpy.from_dlpack(queued.pairs)[: right.count]
+        self.assertEqual(set(rows[:, 0] // 2), {0, 2}, "bodies are numbered through all worlds")
 
     def test_refusals_are_one_line(self):
         for words, options in (

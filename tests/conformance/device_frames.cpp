@@ -247,6 +247,10 @@ TEST_P(DeviceFrames, AreRejectedInOneLineWhereTheHostNeedsThem) {
     EXPECT_THAT(without([&](auto& f) { f.poses.buffer = on.allocate(80, "few"); }),
                 HasSubstr("poses: a buffer of 80 bytes"));
     EXPECT_EQ(without([](auto& f) { f.poses = {}; }), "no error") << "all at the identity";
+    auto rigid = scene;
+    rigid.bodies[1].deformable = false;
+    const auto rigid_session = prepare("tiled", rigid, {});
+    EXPECT_EQ(rigid_session->run(DeviceFrame{frame.poses, {}}).digest(), rigid_session->run(frame).digest());
     const std::array both{&device("host"), &device("opencl:0")};
     const auto& tiled = algorithm("tiled");
     const auto split = tiled.prepare(both, scene, resolved(tiled));
