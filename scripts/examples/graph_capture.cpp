@@ -63,29 +63,42 @@ private:
     tandem::DeviceFrame frame_;
 };
 
-/// The application's graph of one frame; null if a call fails.
-Handle captured(tandem::Session& session, const tandem::DeviceFrame& frame, Handle stream) {
-    Handle graph = nullptr;
-    Handle executable = nullptr;
-    if (!call("cuStreamBeginCapture_v2", stream, 0)) return nullptr;
-    session.enqueue(frame); // and commands of the application, before it and after it
-    if (!call("cuStreamEndCapture", stream, &graph)) return nullptr;
-    call("cuGraphInstantiateWithFlags", &executable, graph, 0ull);
-    call("cuGraphDestroy", graph);
-    return executable;
+/// The application's graph of one frame, and what it needs as long as it lives.
+struct Graph {
+    Handle executable = nullptr; ///< null if a call has failed
+    tandem::QueuedFrame frame;
+};
+
+Graph captured(tandem::Session& session, const tandem::DeviceFrame& frame, Handle stream) {
+    Graph graph;
+    Handle recorded = nullptr;
+    if (!call("cuStreamBeginCapture_v2", stream, 0)) return graph;
+    graph.frame = session.enqueue(frame); // and commands of the application, before it and after it
+    if (!call("cuStreamEndCapture", stream, &recorded)) return graph;
+    call("cuGraphInstantiateWithFlags", &graph.executable, recorded, 0ull);
+    call("cuGraphDestroy", recorded);
+    return graph;
+}
+
+std::uint64_t flag_of(tandem::Device& device, const tandem::QueuedFrame& queued) {
+    std::array<std::uint64_t, QUEUED_WORDS / 2> counts{};
+    const tandem::StageScope scope(device, tandem::Stage::read);
+    device.download(queued.counts, std::as_writable_bytes(std::span(counts))); // waits
+    return counts[QUEUED_FLAG / 2];
 }
 
 /// Replays the graph with the poses of successive steps. Returns how many answers differ from those of run().
-int differing(tandem::Session& session, tandem::Session& other, Arrays& arrays, Handle graph, Handle stream,
-              int replays) {
+int differing(tandem::Session& session, tandem::Session& other, Arrays& arrays, const Graph& graph,
+              Handle stream, int replays) {
     int different = 0;
     for (int step = 0; step < replays; ++step) {
         arrays.set(step);
-        call("cuGraphLaunch", graph, stream);
+        call("cuGraphLaunch", graph.executable, stream);
+        const bool fits = flag_of(*session.devices().front(), graph.frame) == 0;
         const auto found = session.collect();
         const auto right = other.run(arrays.frame());
-        const bool same =
-            found && found->digest() == right.digest() && found->contact_digest() == right.contact_digest();
+        const bool same = fits && found && found->digest() == right.digest()
+                          && found->contact_digest() == right.contact_digest();
         different += same ? 0 : 1;
     }
     return different;
@@ -111,13 +124,13 @@ bool run(tandem::Device& device, const std::string& name, Handle stream, int rep
     arrays.set(0);
     const auto first = session->run(arrays.frame()); // grows the buffers, with an eighth to spare
     session->enqueue(arrays.frame());                // prepares
-    Handle graph = captured(*session, arrays.frame(), stream);
-    if (!check(graph != nullptr, "no graph")) return false;
+    const auto graph = captured(*session, arrays.frame(), stream);
+    if (!check(graph.executable != nullptr, "no graph")) return false;
     const int different = differing(*session, *other, arrays, graph, stream, replays);
     std::printf("%d replays of %s, %llu pairs in the first: %d differ from run()%s\n", replays, name.c_str(),
                 static_cast<unsigned long long>(first.count), different,
                 is_stub() ? " (no kernels ran)" : "");
-    const auto replay = time_of(replays, stream, [&] { call("cuGraphLaunch", graph, stream); });
+    const auto replay = time_of(replays, stream, [&] { call("cuGraphLaunch", graph.executable, stream); });
     const auto whole = time_of(replays, stream, [&] { session->run(arrays.frame()); });
     const auto enqueue_some = [&] {
         for (int i = 0; i < 10; ++i) session->enqueue(arrays.frame());
@@ -129,7 +142,7 @@ bool run(tandem::Device& device, const std::string& name, Handle stream, int rep
     const auto host = microseconds_since(begin, 10);
     std::printf("replay %.1f us, run() %.1f us; the host needs %.1f us for enqueue()\n", replay, whole, host);
     device.finish();
-    return call("cuGraphExecDestroy", graph) && different == 0;
+    return call("cuGraphExecDestroy", graph.executable) && different == 0;
 }
 
 } // namespace
