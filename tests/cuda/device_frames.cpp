@@ -115,11 +115,11 @@ TEST_F(CudaFrames, WorkOnTheApplicationsStream) {
 }
 
 /// The application captures a stream of its own, and the device's stream joins it.
-TEST_F(CudaFrames, AreCapturedIntoAGraphOfTheApplication) {
-    const auto session = prepare(*device);
-    const auto given = frame(*device, poses, vertices);
-    auto* const stream = stream_of(primary());
-    const auto captured = [&](const auto& work) {
+class CapturedFrames : public CudaFrames {
+protected:
+    /// The error of `work`, and the graph of what it enqueued.
+    template<class Work>
+    std::pair<std::string, void*> captured(const Work& work) {
         make_current(primary());
         EXPECT_EQ((entry<CUstream_st*, int>("cuStreamBeginCapture_v2")(stream, 0)), 0);
         device->follow(stream);
@@ -128,17 +128,16 @@ TEST_F(CudaFrames, AreCapturedIntoAGraphOfTheApplication) {
         void* graph = nullptr;
         EXPECT_EQ((entry<CUstream_st*, void**>("cuStreamEndCapture")(stream, &graph)), 0);
         make_current(nullptr);
-        return std::pair(message, graph);
-    };
+        return {message, graph};
+    }
+
+    CUstream_st* stream = stream_of(primary());
+};
+
+TEST_F(CapturedFrames, AreCommandsOfTheApplicationsGraph) {
+    const auto session = prepare(*device);
+    const auto given = frame(*device, poses, vertices);
     const auto enqueue = [&] { session->enqueue(given); };
-    const auto is_refused = [&] {
-        EXPECT_THAT(captured(enqueue).first, testing::HasSubstr("enqueue a frame before the capture"));
-    };
-    is_refused();
-    session->enqueue(scene.frame(0)); // a frame of another kind does not prepare it
-    is_refused();
-    session->enqueue(given, all_pairs(scene));
-    is_refused();
     for (int i = 0; i < 3; ++i) enqueue(); // prepares; its own graph is then known
     const auto waits = entry_of_stub<unsigned long()>("stub_waits");
     const auto launches = entry_of_stub<unsigned long()>("stub_graph_launches");
@@ -160,7 +159,23 @@ TEST_F(CudaFrames, AreCapturedIntoAGraphOfTheApplication) {
     EXPECT_EQ(launches_with(poses.data()), packed);
     entry<void*>("cuGraphExecDestroy")(executable);
     make_current(nullptr);
+}
+
+TEST_F(CapturedFrames, NeedAPreparedFrameOfTheirKindInDeviceMemory) {
+    const auto session = prepare(*device);
+    const auto given = frame(*device, poses, vertices);
+    const auto is_refused = [&] {
+        EXPECT_THAT(captured([&] { session->enqueue(given); }).first,
+                    testing::HasSubstr("enqueue a frame before the capture"));
+    };
+    is_refused();
+    session->enqueue(scene.frame(0)); // a frame of another kind does not prepare it
+    is_refused();
+    session->enqueue(given, all_pairs(scene));
+    is_refused();
     EXPECT_THAT(captured([&] { session->enqueue(scene.frame(0)); }).first,
+                testing::HasSubstr("the host's memory, which the graph would not read again"));
+    EXPECT_THAT(captured([&] { session->enqueue(given, all_pairs(scene)); }).first,
                 testing::HasSubstr("the host's memory, which the graph would not read again"));
 }
 
