@@ -52,6 +52,7 @@ void ResidentSession::refresh(const Input& input) {
         pipeline_.stages.hierarchy->refit(input.host->frame, all);
         return;
     }
+    // NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker): one of the two frames is given
     pack_->launch(*input.device, origin(), pipeline_.status.buffer());
     pipeline_.stages.hierarchy->refit({.poses = {}, .deformed = {}, .skipped = input.device->frame.skipped},
                                       all);

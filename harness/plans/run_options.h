@@ -15,7 +15,7 @@
 namespace tandem {
 
 /// Options of `tandem run` and `tandem check`, as given.
-struct RunOptions {
+struct RunOptions { // NOLINT(clang-analyzer-optin.performance.Padding): in the order of readers
     std::string scene;
     std::vector<std::string> scenes; ///< `tandem run` only: measured one after another
     std::optional<PlanFile>
