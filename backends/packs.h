@@ -39,6 +39,9 @@ typedef int flags __attribute__((vector_size(PACK_BYTES)));
 #define COUNT_FLAGS(condition) tandem::host::count_of_pack(condition)
 #define AT(value, element) ((value)[element])
 #define ELEMENT_NUMBERS tandem::host::numbers_of_pack<uints>() // 0, 1, 2, ...
+typedef uints patterns;                                        // bits of reals
+#define NO_PATTERN (patterns{})
+#define SIGN_OF(pattern) ((pattern) >> (PRECISION - 1)) // 1 or 0
 #else
 #define PACK 1
 typedef real reals;
@@ -55,7 +58,15 @@ typedef int flags;
 #define COUNT_FLAGS(condition) BIT(condition)
 #define AT(value, element) (value)
 #define ELEMENT_NUMBERS 0u
+#if PRECISION == 64
+typedef ulong patterns;
+#else
+typedef uint patterns;
 #endif
+#define NO_PATTERN ((patterns)0)
+#define SIGN_OF(pattern) ((uint)((pattern) >> (PRECISION - 1)))
+#endif
+#define SIGN_BIT(value) SIGN_OF(BITS_OF(value))
 #define FOR_PACK(element) for (uint element = 0; element < (uint)PACK; ++element)
 
 // Counts in a group's memory, and runs the statement, which stores in place `entry`, if the condition holds.

@@ -330,4 +330,20 @@ DEVICE uint reserved_slots(const LaneCounter* counter) {
     return LANES_ARE_WARP ? counter->value : *counter->word;
 }
 
+// Adds the number of reserved slots to a counter in device memory; returns what that was before. Call it
+// after a LANE_BARRIER. On other devices than a warp it uses the word, so that begin_count must follow.
+DEVICE uint place_of_slots(const LaneCounter* counter, GLOBAL uint* length) {
+    const uint count = reserved_slots(counter);
+#if LANES_ARE_WARP
+    uint place = 0;
+    if (LANE_ID == 0u && count != 0u) place = counter_add(length, count);
+    return FROM_FIRST_LANE(place);
+#else
+    LANE_BARRIER;
+    if (LANE_ID == 0u && count != 0u) *counter->word = counter_add(length, count);
+    LANE_BARRIER;
+    return *counter->word;
+#endif
+}
+
 #endif

@@ -10,9 +10,12 @@
 
 // Pairs per work-item between two writes of its group's results, each of which needs barriers. Where many
 // pairs lack boundary faces, enough others remain for all work-items.
-#define PAIRS_AT_A_TIME (8 * PACK)
-#define FOUND_CAPACITY (PAIRS_AT_A_TIME * GROUP_SIZE)
-#define GROUP_ASKED GROUP_OWN // number of pairs in `asked`
+#define READ_AT_ONCE 4
+#define READS 2
+#define PAIRS_AT_A_TIME (READS * READ_AT_ONCE * PACK)
+// The pairs of all work-items, and fewer than one for each that wait for more.
+#define ROUND_PAIRS (GROUP_SIZE * PACK)
+#define FOUND_CAPACITY ((PAIRS_AT_A_TIME + PACK) * GROUP_SIZE)
 
 // Appends a group's results to the lists. The whole group must call it.
 DEVICE void hand_out(LOCAL const uint* found, LOCAL uint* group, GLOBAL uint* open, GLOBAL uint* meeting,
@@ -27,27 +30,49 @@ DEVICE void hand_out(LOCAL const uint* found, LOCAL uint* group, GLOBAL uint* op
         meeting[group[GROUP_PLACES + LIST_MEETING] + i] = found[LIST_MEETING * FOUND_CAPACITY + i];
     BARRIER;
     for (uint i = LOCAL_ID; i < LISTS; i += GROUP_SIZE) group[i] = 0u;
-    if (LOCAL_ID == 0u) group[GROUP_ASKED] = 0u;
+}
+
+// Moves pairs from `done` on, fewer than ROUND_PAIRS, to the front of `asked`. The whole group must call it.
+DEVICE void keep_rest(uint done, LOCAL uint* asked, LOCAL uint* group) {
+    const uint rest = group[GROUP_ASKED] - done;
+    BARRIER;
+    if (done != 0u)
+        for (uint i = LOCAL_ID; i < rest; i += GROUP_SIZE) asked[i] = asked[done + i];
+    if (LOCAL_ID == 0u) group[GROUP_ASKED] = rest;
     BARRIER;
 }
 
-// Lists pairs base..base + count - 1 that have the boundary faces that the rule needs, and counts the others.
-DEVICE void ask(const Candidates* all, uint base, uint count, LOCAL uint* asked, LOCAL uint* group) {
+// Lists those of READ_AT_ONCE packs of pairs that have the boundary faces that the rule needs, and counts the
+// others. `base`: the first pair of the first pack; packs are ROUND_PAIRS apart.
+DEVICE void ask(const Candidates* all, ulong base, ulong count, LOCAL uint* asked, LOCAL uint* group) {
 #if PACK > 1
     uint entry = group[GROUP_ASKED];
-    const uint before = entry;
-    for (uint i = 0; i < count; ++i) { // without a branch, because none would be foreseen
-        asked[entry] = base + i;
-        entry += 1u - lacks_boundary(all, base + i);
+    for (uint pack = 0; pack < READ_AT_ONCE; ++pack, base += ROUND_PAIRS) {
+        const uint present = elements_below(base, count);
+        const uint before = entry;
+        for (uint i = 0; i < present; ++i) { // without a branch, because none would be foreseen
+            asked[entry] = (uint)base + i;
+            entry += 1u - lacks_boundary(all, (uint)base + i);
+        }
+        group[GROUP_WITHOUT] += present - (entry - before);
     }
     group[GROUP_ASKED] = entry;
-    group[GROUP_WITHOUT] += count - (entry - before);
 #else
-    if (count == 0u) return;
-    if (lacks_boundary(all, base) != 0u)
-        LOCAL_ATOMIC_ADD(group + GROUP_WITHOUT, 1u);
-    else
-        asked[LOCAL_ATOMIC_ADD(group + GROUP_ASKED, 1u)] = base;
+    if (base >= count) return;
+    uint present = 0;
+    uint lacking = 0; // one bit for each pair: all are read before any is listed
+    UNROLL for (uint i = 0; i < READ_AT_ONCE; ++i) {
+        const ulong index = base + i * GROUP_SIZE;
+        const flags is_one = index < count;
+        present += BIT(is_one);
+        lacking |= lacks_boundary(all, (uint)(is_one ? index : base)) << i;
+    }
+    const uint without = COUNT_ONES(lacking & ((1u << present) - 1u));
+    if (without != 0u) LOCAL_ATOMIC_ADD(group + GROUP_WITHOUT, without);
+    uint entry = without < present ? LOCAL_ATOMIC_ADD(group + GROUP_ASKED, present - without) : 0u;
+    UNROLL for (uint i = 0; i < READ_AT_ONCE; ++i) {
+        if (i < present && (lacking >> i & 1u) == 0u) asked[entry++] = (uint)(base + i * GROUP_SIZE);
+    }
 #endif
 }
 
@@ -63,16 +88,18 @@ KERNEL void certify_pairs(GLOBAL const uint* found, uint first, uint pair_capaci
     LOCAL_ARRAY(uint, waiting, LISTS * FOUND_CAPACITY);
     const Candidates all = {found, owners, poses, tetrahedra, vertices, boundary};
     const ulong count = rows_in(status + STATUS_PAIRS, pair_capacity);
-    ulong start = (ulong)first + (GROUP_ID * (uint)GROUP_SIZE) * PACK;
+    // A group's pairs lie together, because the walk found them together: they share tetrahedra.
+    ulong start = (ulong)first + (GROUP_ID * (uint)GROUP_SIZE) * PAIRS_AT_A_TIME;
     begin_group(group);
     do {
-        NO_UNROLL for (int i = 0; i < PAIRS_AT_A_TIME / PACK; ++i, start += GLOBAL_COUNT * PACK) {
-            const ulong base = start + LOCAL_ID * PACK;
-            ask(&all, (uint)base, elements_below(base, count), asked, group);
-        }
+        NO_UNROLL for (uint i = 0; i < READS; ++i)
+            ask(&all, start + i * READ_AT_ONCE * ROUND_PAIRS + LOCAL_ID * PACK, count, asked, group);
+        start += PAIRS_AT_A_TIME * GLOBAL_COUNT;
         BARRIER;
-        NO_UNROLL for (uint i = LOCAL_ID * PACK; i < group[GROUP_ASKED]; i += GROUP_SIZE * PACK) {
-            const uint present = elements_below(i, group[GROUP_ASKED]);
+        const uint rest = start < count ? group[GROUP_ASKED] % ROUND_PAIRS : 0u;
+        const uint end = group[GROUP_ASKED] - rest;
+        NO_UNROLL for (uint i = LOCAL_ID * PACK; i < end; i += ROUND_PAIRS) {
+            const uint present = elements_below(i, end);
             uints index = SAME_WORD(0);
             FOR_PACK(element) AT(index, element) = asked[i + (element < present ? element : 0u)];
             uints edge = SAME_WORD(0);
@@ -91,6 +118,7 @@ KERNEL void certify_pairs(GLOBAL const uint* found, uint first, uint pair_capaci
             }
         }
         hand_out(waiting, group, open, meeting, status);
+        keep_rest(end, asked, group);
     } while (start < count);
     end_group(group, status);
 }

@@ -7,6 +7,9 @@
 
 #include "algorithms/narrow_phase/pair_state.clh"
 #include "algorithms/narrow_phase/pair_lists.clh"
+#if PACK == 1
+#include "algorithms/narrow_phase/contact_queue.clh"
+#endif
 
 // States of pairs. `pair`: as in try_all.
 DEVICE uints try_pair(const Candidates* all, uints index, flags apart, LOCAL LocalPair* pair) {
@@ -37,7 +40,7 @@ typedef struct {
     RealRow values[2 * BATCH_CAPACITY];
 } ContactBatch;
 
-DEVICE void hand_out(ContactBatch* batch, const Sink* sink) {
+DEVICE void write_batch(ContactBatch* batch, const Sink* sink) {
     if (batch->count == 0u) return;
     const ulong row = counter_add(sink->status + STATUS_CONTACTS, batch->count);
     const ulong room = row < sink->capacity ? sink->capacity - row : 0;
@@ -60,7 +63,7 @@ DEVICE void make_contacts(Features features, const MeetingPair* pair, ContactBat
         LocalContact touch;
         const flags kept = asked & touch_of(pair, feature, &touch);
         if (!ANY(kept)) continue;
-        if (batch->count + PACK > BATCH_CAPACITY) hand_out(batch, sink);
+        if (batch->count + PACK > BATCH_CAPACITY) write_batch(batch, sink);
         const uints written = written_feature(pair, feature);
         FOR_PACK(i) {
             if (kept[i] == 0) continue;
@@ -69,69 +72,6 @@ DEVICE void make_contacts(Features features, const MeetingPair* pair, ContactBat
             ++batch->count;
         }
     }
-}
-#else
-// Features of a group's pairs wait in a queue, so that all work-items have one, however many a pair has. An
-// entry is the number of a work-item, whose pair it is, and that of a feature.
-#define QUEUED 8 // features of a work-item that enter at a time
-#define FEATURE_BITS 6
-#define FEATURE_OF(entry) ((entry) & ((1u << FEATURE_BITS) - 1u))
-#define OWNER_OF(entry) ((entry) >> FEATURE_BITS)
-
-// Words of a group's local memory. They are 0 between calls of make_contacts.
-#define QUEUE_END GROUP_OWN        // number of entries in the queue
-#define UNFINISHED (GROUP_OWN + 1) // number of work-items with features that are not in the queue yet
-#define NEW_CONTACTS (GROUP_OWN + 2)
-#define FIRST_ROW (GROUP_OWN + 3) // of the new contacts in the answer
-
-// Moves features of the work-item, one bit each, to the queue; returns the rest.
-DEVICE Features enqueue(Features features, LOCAL unsigned short* queue, LOCAL uint* group) {
-    const uint all = COUNT_ONES(features.low) + COUNT_ONES(features.high);
-    const uint count = all < QUEUED ? all : QUEUED;
-    const uint before = count != 0u ? LOCAL_ATOMIC_ADD(group + QUEUE_END, count) : 0u;
-    for (uint i = 0; i < count; ++i, features = without_lowest(features))
-        queue[before + i] = (unsigned short)(LOCAL_ID << FEATURE_BITS | lowest_feature(features));
-    if (has_features(features)) LOCAL_ATOMIC_ADD(group + UNFINISHED, 1u);
-    return features;
-}
-
-// The row of the work-item's contact, if it has one. The whole group must call it. It also empties the queue.
-DEVICE ulong row_in_answer(int has_contact, LOCAL uint* group, GLOBAL uint* status) {
-    const uint before = has_contact ? LOCAL_ATOMIC_ADD(group + NEW_CONTACTS, 1u) : 0u;
-    BARRIER;
-    if (LOCAL_ID == 0u) {
-        const uint count = group[NEW_CONTACTS];
-        group[FIRST_ROW] = count != 0u ? counter_add(status + STATUS_CONTACTS, count) : 0u;
-        group[NEW_CONTACTS] = group[QUEUE_END] = group[UNFINISHED] = 0u;
-    }
-    BARRIER;
-    return (ulong)group[FIRST_ROW] + before;
-}
-
-// Makes the contacts of a group's pairs. `features`: of the work-item's own pair. The whole group must call
-// it.
-DEVICE void make_contacts(Features features, LOCAL const MeetingPair* pairs, LOCAL unsigned short* queue,
-                          LOCAL uint* group, const Sink* sink) {
-    uint unfinished = 0;
-    do {
-        features = enqueue(features, queue, group);
-        BARRIER;
-        const uint end = group[QUEUE_END];
-        unfinished = group[UNFINISHED];
-        BARRIER;
-        for (uint start = 0; start < end; start += GROUP_SIZE) {
-            const uint entry = start + LOCAL_ID < end ? queue[start + LOCAL_ID] : 0u;
-            LOCAL const MeetingPair* pair = pairs + OWNER_OF(entry);
-            LocalContact touch;
-            const int has_contact = start + LOCAL_ID < end && touch_of(pair, FEATURE_OF(entry), &touch);
-            const ulong row = row_in_answer(has_contact, group, sink->status);
-            if (has_contact && row < sink->capacity)
-                write_touch(pair, written_feature(pair, FEATURE_OF(entry)), &touch, 0,
-                            sink->ids + row * CONTACT_WORDS,
-                            (GLOBAL RealRow*)(sink->values + row * CONTACT_REALS));
-        }
-    } while (unfinished != 0u);
-    BARRIER; // the next pairs replace those that others have just written contacts of
 }
 #endif
 
@@ -148,7 +88,7 @@ KERNEL void generate_contacts(GLOBAL const uint* found, uint first, uint pair_ca
     ContactBatch batch;
     batch.count = 0;
 #else
-    LOCAL_ARRAY(unsigned short, queue, QUEUED* GROUP_SIZE);
+    CONTACT_TEAM(team);
 #endif
     const Candidates all = {found, owners, poses, tetrahedra, vertices, boundary};
     const Sink sink = {contact_ids, contact_values, status, contact_capacity};
@@ -177,12 +117,13 @@ KERNEL void generate_contacts(GLOBAL const uint* found, uint first, uint pair_ca
 #if PACK > 1
         make_contacts(features, pairs, &batch, &sink);
 #else
-        make_contacts(features, pairs, queue, group, &sink);
+        make_contacts(features, pairs, &team, &sink);
 #endif
         start += GLOBAL_COUNT * PACK;
     } while (start < count);
 #if PACK > 1
-    hand_out(&batch, &sink);
+    write_batch(&batch, &sink);
 #endif
+    BARRIER;
     if (AT_ONCE) end_group(group, status);
 }
