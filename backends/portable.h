@@ -169,7 +169,9 @@ typedef unsigned long ulong; // 64 bits on Linux
     name##_storage.resize(count);                                                                            \
     type* const name = name##_storage.data()
 #endif
-#ifdef IN_PACKS // a call would pass values of packs through memory
+// A call would pass values of packs through memory and end the vector code of a loop over lanes, and g++
+// inlines only a part of what a file with many kernels calls.
+#if defined(IN_PACKS) || defined(__AVX2__)
 #define DEVICE [[gnu::always_inline]] static inline
 #else
 #define DEVICE static inline
