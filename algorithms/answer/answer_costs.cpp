@@ -24,10 +24,8 @@ std::vector<KernelCost> answer_costs(const SceneFacts& scene) {
              [=](const FrameFacts& f) { return (scene.row_bytes + 4) * f.candidate_pairs; },
              {},
              "keys in, pairs out"},
-            {"count_contacts", {}, {}, "nothing: contacts are not counted in advance"},
-            {"scatter_contacts", {}, {}, "nothing: contacts are not counted in advance"},
-            {"sort_contacts", {}, {}, "nothing: contacts are not counted in advance"},
-            {"return_contacts", {}, {}, "nothing: contacts are not counted in advance"}};
+            {"mark_contacts", {}, {}, "nothing: contacts are not counted in advance"},
+            {"place_contacts", {}, {}, "nothing: contacts are not counted in advance"}};
 }
 
 } // namespace tandem

@@ -22,6 +22,18 @@ enum ContactColumn : std::size_t {
     contact_values ///< 8 reals: point, normal, depth, padding
 };
 
+/// Where contacts are written, up to a capacity.
+struct ContactRows {
+    const Buffer &ids, &values;
+    std::uint32_t capacity;
+
+    ContactRows(const Buffer& id_rows, const Buffer& value_rows, std::uint32_t rows)
+        : ids(id_rows), values(value_rows), capacity(rows) {}
+    explicit ContactRows(const AnswerBuffers& answer)
+        : ContactRows(answer.contacts.buffer(contact_ids), answer.contacts.buffer(contact_values),
+                      answer.contacts.capacity()) {}
+};
+
 /// Kernels for digests, counts and downloads of pairs and contacts, with the bodies they refer to. A session
 /// and its results own it together.
 class AnswerTools {

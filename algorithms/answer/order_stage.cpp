@@ -36,23 +36,35 @@ std::vector<std::uint32_t> first_places(const Scene& scene) {
 /// Rows of keys, which kernels read in quads.
 std::uint64_t whole_quads(std::uint32_t rows) { return (std::uint64_t{rows} + 3) / 4 * 4; }
 
-/// The table `solids` of sort.cl. Places of tetrahedra that are not walked are 0 and not read.
-std::vector<std::uint32_t> solids_by_place(const Bodies& bodies, const std::vector<std::uint32_t>& firsts) {
-    const std::size_t words = bodies.pair_layout() == PairLayout::slots ? 1 : 2;
-    std::vector<std::uint32_t> solids(words * firsts.back());
+/// Tables of sort.cl. Places of tetrahedra that are not walked have no solid, and are not read.
+struct Tables {
+    std::vector<std::uint32_t> solids; ///< by place, the tetrahedron's words in pairs
+    std::vector<std::uint32_t> places; ///< by slot, or by item of the scene
+};
+
+Tables tables_of(const Bodies& bodies, const std::vector<std::uint32_t>& firsts) {
+    const bool slots = bodies.pair_layout() == PairLayout::slots;
+    Tables tables;
+    tables.solids.resize((slots ? std::size_t{1} : 2) * firsts.back());
+    tables.places.resize(slots ? 0 : firsts.back());
     for (std::uint32_t body = 0; body < bodies.count(); ++body) {
         const auto& ids = bodies.mesh(body).ids;
+        const auto first_slot = slots ? bodies.first_slot(body) : 0;
+        const auto first = slots ? first_slot : firsts[body];
+        if (tables.places.size() < std::size_t{first} + ids.size())
+            tables.places.resize(std::size_t{first} + ids.size());
         for (std::uint32_t item = 0; item < ids.size(); ++item) {
-            auto* const solid = &solids[words * (firsts[body] + ids[item])];
-            if (words == 1) {
-                solid[0] = bodies.first_slot(body) + item;
+            const auto place = firsts[body] + ids[item];
+            tables.places[first + item] = place;
+            if (slots) {
+                tables.solids[place] = first_slot + item;
             } else {
-                solid[0] = body;
-                solid[1] = item;
+                tables.solids[2 * std::size_t{place}] = body;
+                tables.solids[2 * std::size_t{place} + 1] = item;
             }
         }
     }
-    return solids;
+    return tables;
 }
 
 } // namespace
@@ -69,36 +81,32 @@ OrderStage::OrderStage(const Bodies& bodies, LaunchShape shape, bool contacts)
     compile(count_pairs_, sum_parts_, start_runs_, scatter_pairs_, sort_pairs_);
     const StageScope scope(device, Stage::write);
     firsts_ = uploaded(device, bytes_of(firsts), "first tetrahedra of bodies");
-    solids_ = uploaded(device, bytes_of(solids_by_place(bodies, firsts)), "tetrahedra in canonical order");
+    const auto tables = tables_of(bodies, firsts);
+    solids_ = uploaded(device, bytes_of(tables.solids), "tetrahedra in canonical order");
+    table_ = uploaded(device, bytes_of(tables.places), "places in canonical order");
     sums_ = device.allocate(shape_.groups * 4, "sums of counts");
     counts_ = GrowableBuffer(device, "counts by key", 4, 0);
     pairs_ = GrowableBuffer(device, {{"keys of pairs", 4}, {"places of pairs in runs", 4}}, 0);
     if (!contacts) return;
-    compile(count_contacts_, scatter_contacts_, sort_contacts_, return_contacts_);
-    contacts_ = GrowableBuffer(device,
-                               {{"contacts to sort", 4},
-                                {"keys of contacts", 4},
-                                {"places of contacts in runs", 4},
-                                {"ids of sorted contacts", 8},
-                                {"values of sorted contacts", 8 * real_bytes(bodies.geometry())}},
-                               0);
+    compile(mark_contacts_, place_contacts_);
+    masks_ = GrowableBuffer(device, {{"features of contacts by pair", 8}, {"first contacts of pairs", 4}}, 0);
+    contacts_ = GrowableBuffer(
+        device,
+        {{"ids of contacts to sort", 8}, {"values of contacts to sort", 8 * real_bytes(bodies.geometry())}},
+        0);
 }
 
-void OrderStage::begin_counts(std::uint32_t keys) {
-    counts_.reserve(keys);
-    bodies_.device().clear(counts_.buffer(), std::size_t{keys} * 4);
-}
-
-void OrderStage::start_runs(std::uint32_t keys, bool by_pair, const Status& status) {
-    const auto run = [&]<class Arguments>(const KernelOf<Arguments>& kernel) {
-        launch(kernel, Arguments{.counts = counts_.buffer(),
-                                 .most = keys,
-                                 .by_pair = std::uint32_t{by_pair ? 1u : 0u},
-                                 .sums = sums_,
-                                 .status = status.buffer()});
-    };
-    run(sum_parts_);
-    run(start_runs_);
+void OrderStage::start_runs(const Buffer& counts, std::uint32_t keys, bool by_pair, const Status& status,
+                            const Buffer& starts) {
+    const std::uint32_t word = by_pair ? 1 : 0;
+    launch(sum_parts_,
+           {.counts = counts, .most = keys, .by_pair = word, .sums = sums_, .status = status.buffer()});
+    launch(start_runs_, {.counts = counts,
+                         .most = keys,
+                         .by_pair = word,
+                         .sums = sums_,
+                         .starts = starts,
+                         .status = status.buffer()});
 }
 
 void OrderStage::sort_pairs(const Buffer& found, std::uint32_t capacity, const Status& status,
@@ -106,26 +114,26 @@ void OrderStage::sort_pairs(const Buffer& found, std::uint32_t capacity, const S
     const StageScope scope(bodies_.device(), Stage::sort);
     pairs_.reserve(whole_quads(capacity));
     const auto &keys = pairs_.buffer(0), &before = pairs_.buffer(1);
-    begin_counts(places_);
+    counts_.reserve(places_);
+    const auto& counts = counts_.buffer();
+    bodies_.device().clear(counts, std::size_t{places_} * 4);
     launch(count_pairs_, {.found = found,
                           .capacity = capacity,
-                          .owners = bodies_.owners(),
-                          .ids = bodies_.ids(),
                           .firsts = firsts_,
-                          .counts = counts_.buffer(),
+                          .places = table_,
+                          .counts = counts,
                           .before = before,
                           .status = status.buffer()});
-    start_runs(places_, false, status);
+    start_runs(counts, places_, false, status, counts);
     launch(scatter_pairs_, {.found = found,
                             .capacity = capacity,
-                            .owners = bodies_.owners(),
-                            .ids = bodies_.ids(),
                             .firsts = firsts_,
-                            .places = counts_.buffer(),
+                            .places = table_,
+                            .starts = counts,
                             .before = before,
                             .keys = keys,
                             .status = status.buffer()});
-    launch(sort_pairs_, {.places = counts_.buffer(),
+    launch(sort_pairs_, {.run_starts = counts,
                          .count = places_,
                          .capacity = capacity,
                          .keys = keys,
@@ -134,44 +142,32 @@ void OrderStage::sort_pairs(const Buffer& found, std::uint32_t capacity, const S
                          .status = status.buffer()});
 }
 
+ContactRows OrderStage::unsorted(const AnswerBuffers& answer) {
+    const auto capacity = answer.contacts.capacity();
+    contacts_.reserve(capacity);
+    masks_.reserve(answer.pairs.capacity());
+    return {contacts_.buffer(contact_ids), contacts_.buffer(contact_values), capacity};
+}
+
 void OrderStage::sort_contacts(const AnswerBuffers& answer, const Status& status) {
     const StageScope scope(bodies_.device(), Stage::sort);
-    const auto& found = answer.contacts;
     const auto pairs = answer.pairs.capacity();
-    const auto &ids = found.buffer(contact_ids), &values = found.buffer(contact_values);
-    contacts_.reserve(whole_quads(found.capacity()));
-    const auto &rows = contacts_.buffer(0), &keys = contacts_.buffer(1), &before = contacts_.buffer(2);
-    const auto &sorted_ids = contacts_.buffer(3), &sorted_values = contacts_.buffer(4);
-    begin_counts(pairs);
-    launch(count_contacts_, {.contact_ids = ids,
-                             .capacity = found.capacity(),
-                             .counts = counts_.buffer(),
-                             .before = before,
-                             .status = status.buffer()});
-    start_runs(pairs, true, status);
-    launch(scatter_contacts_, {.contact_ids = ids,
-                               .capacity = found.capacity(),
-                               .places = counts_.buffer(),
-                               .before = before,
-                               .rows = rows,
-                               .keys = keys,
-                               .status = status.buffer()});
-    launch(sort_contacts_, {.places = counts_.buffer(),
-                            .pair_capacity = pairs,
-                            .capacity = found.capacity(),
-                            .rows = rows,
-                            .keys = keys,
-                            .contact_ids = ids,
-                            .contact_values = values,
-                            .sorted_ids = sorted_ids,
-                            .sorted_values = sorted_values,
+    const auto &masks = masks_.buffer(0), &starts = masks_.buffer(1);
+    const auto &ids = contacts_.buffer(contact_ids), &values = contacts_.buffer(contact_values);
+    bodies_.device().clear(masks, std::size_t{pairs} * 8);
+    launch(mark_contacts_, {.contact_ids = ids,
+                            .capacity = answer.contacts.capacity(),
+                            .masks = masks,
                             .status = status.buffer()});
-    launch(return_contacts_, {.sorted_ids = sorted_ids,
-                              .sorted_values = sorted_values,
-                              .capacity = found.capacity(),
-                              .contact_ids = ids,
-                              .contact_values = values,
-                              .status = status.buffer()});
+    start_runs(masks, pairs, true, status, starts);
+    launch(place_contacts_, {.contact_ids = ids,
+                             .contact_values = values,
+                             .capacity = answer.contacts.capacity(),
+                             .masks = masks,
+                             .starts = starts,
+                             .sorted_ids = answer.contacts.buffer(contact_ids),
+                             .sorted_values = answer.contacts.buffer(contact_values),
+                             .status = status.buffer()});
 }
 
 } // namespace tandem

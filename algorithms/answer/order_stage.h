@@ -10,8 +10,8 @@ namespace tandem {
 
 /// Brings an answer on a device into canonical order: pairs ascend by body a, tetrahedron a, body b and
 /// tetrahedron b, contacts by pair and feature, with the numbers of the scene. Grids do not depend on counts.
-/// Buffers: 8 to 12 bytes per tetrahedron of the bodies, and 8 per pair. With contacts 4 bytes more per pair,
-/// and a copy of the contacts with 12 bytes more each.
+/// Buffers: 12 to 16 bytes per tetrahedron of the bodies, and 8 per pair. With contacts 12 bytes more per
+/// pair, and as many bytes as the contacts have.
 class OrderStage {
 public:
     /// `bodies` must outlive this. Throws DeviceError for more than 2^32 - 1 tetrahedra.
@@ -25,7 +25,9 @@ public:
     }
     /// The same for another buffer of `capacity` rows. Writes the pairs to `sorted`, which may be `found`.
     void sort_pairs(const Buffer& found, std::uint32_t capacity, const Status& status, const Buffer& sorted);
-    /// Enqueues the sort of the contacts of sorted pairs. Throws OutOfMemory.
+    /// Where the contacts of sorted pairs go until they are sorted. Throws OutOfMemory.
+    ContactRows unsorted(const AnswerBuffers& answer);
+    /// Enqueues the sort of the contacts in unsorted() into the answer.
     void sort_contacts(const AnswerBuffers& answer, const Status& status);
 
 private:
@@ -33,25 +35,24 @@ private:
     void launch(const KernelOf<Arguments>& kernel, const std::type_identity_t<Arguments>& arguments) {
         bodies_.device().launch(kernel, {shape_.groups, shape_.group_size}, arguments);
     }
-    void begin_counts(std::uint32_t keys);
-    /// `by_pair`: keys are pairs, of which the answer may have fewer.
-    void start_runs(std::uint32_t keys, bool by_pair, const Status& status);
+    /// `by_pair`: keys are pairs, of which the answer may have fewer, and counts are masks. `starts` may be
+    /// `counts`.
+    void start_runs(const Buffer& counts, std::uint32_t keys, bool by_pair, const Status& status,
+                    const Buffer& starts);
 
     const Bodies& bodies_;
     LaunchShape shape_;
     std::uint32_t places_ = 0; ///< tetrahedra of all bodies, in input order
-    Buffer firsts_, solids_, sums_;
-    GrowableBuffer counts_, pairs_, contacts_;
+    Buffer firsts_, solids_, table_, sums_;
+    GrowableBuffer counts_, pairs_, masks_, contacts_;
     KernelOf<kernels::sort::CountPairs> count_pairs_;
     KernelOf<kernels::sort::SumParts> sum_parts_;
     KernelOf<kernels::sort::StartRuns> start_runs_;
     KernelOf<kernels::sort::ScatterPairs> scatter_pairs_;
     KernelOf<kernels::sort::SortPairs> sort_pairs_;
     // Null without contacts.
-    KernelOf<kernels::sort::CountContacts> count_contacts_;
-    KernelOf<kernels::sort::ScatterContacts> scatter_contacts_;
-    KernelOf<kernels::sort::SortContacts> sort_contacts_;
-    KernelOf<kernels::sort::ReturnContacts> return_contacts_;
+    KernelOf<kernels::sort::MarkContacts> mark_contacts_;
+    KernelOf<kernels::sort::PlaceContacts> place_contacts_;
 };
 
 } // namespace tandem

@@ -1,41 +1,61 @@
 // SPDX-License-Identifier: MIT
 // Canonical order of an answer: pairs by the numbers of their bodies and tetrahedra, contacts by pair and
-// feature. Rows are counted by a first key, whose sums give each key its run of places. Rows go to places of
-// their run in any order. The rank of a row's second key in its run is then its place. Runs are short: most
-// have fewer than 32 rows. Second keys of a run differ.
+// feature. Pairs are counted by a first key, whose sums give each key its run of places. They go to places of
+// their run in any order. The rank of a pair's second key in its run is then its place. Runs are short: most
+// have fewer than 32 pairs. Second keys of a run differ. Of contacts, each pair gets a mask of its features;
+// a contact's place in the run of its pair is then the number of lower features.
 // Host variants: PRECISION
 #include "backends/portable.h"
 #include "algorithms/answer/pairs.clh"
 #include "algorithms/kernels/parts.clh"
 
-// Position of a tetrahedron in the order of the scene: `firsts` has that of each body's first tetrahedron.
-DEVICE uint place_of(const BodyTetrahedron* one, GLOBAL const uint* firsts, GLOBAL const uint* ids) {
-    return firsts[one->body] + tetrahedron_id(ids, one->tetrahedron);
+// Places in the order of the scene of a pair's tetrahedra. `places`: that of each slot, or of each item, the
+// first of a body at `firsts`.
+DEVICE WordPair places_of(GLOBAL const uint* found, ulong index, GLOBAL const uint* firsts,
+                          GLOBAL const uint* places) {
+    WordPair pair;
+    if (PAIR_LAYOUT == PAIR_SLOTS) {
+        const WordPair slots = ((GLOBAL const WordPair*)found)[index];
+        pair.x = places[slots.x];
+        pair.y = places[slots.y];
+    } else {
+        const WordRow items = ((GLOBAL const WordRow*)found)[index];
+        pair.x = places[firsts[items.x] + items.z];
+        pair.y = places[firsts[items.y] + items.w];
+    }
+    return pair;
 }
 
 // counts[place of a] += 1 for each pair. Stores the count before, which is the pair's place in its run.
-KERNEL void count_pairs(GLOBAL const uint* found, uint capacity, GLOBAL const uint* owners,
-                        GLOBAL const uint* ids, GLOBAL const uint* firsts, GLOBAL uint* counts,
-                        GLOBAL uint* before, GLOBAL const uint* status) {
+KERNEL void count_pairs(GLOBAL const uint* found, uint capacity, GLOBAL const uint* firsts,
+                        GLOBAL const uint* places, GLOBAL uint* counts, GLOBAL uint* before,
+                        GLOBAL const uint* status) {
     const uint rows = rows_in(status + STATUS_PAIRS, capacity);
-    for (ulong i = GLOBAL_ID; i < rows; i += GLOBAL_COUNT) { // 32 bits might wrap around
-        const PairMembers pair = members_of(found, i, owners);
-        before[i] = ATOMIC_ADD(counts + place_of(&pair.a, firsts, ids), 1u);
+    for (ulong i = GLOBAL_ID; i < rows; i += GLOBAL_COUNT) // 32 bits might wrap around
+        before[i] = ATOMIC_ADD(counts + places_of(found, i, firsts, places).x, 1u);
+}
+
+// Two words for each pair: bits of the features of its contacts. Each sets one bit.
+KERNEL void mark_contacts(GLOBAL const uint* contact_ids, uint capacity, GLOBAL uint* masks,
+                          GLOBAL const uint* status) {
+    const uint rows = rows_in(status + STATUS_CONTACTS, capacity);
+    for (ulong i = GLOBAL_ID; i < rows; i += GLOBAL_COUNT) {
+        const WordPair contact = ((GLOBAL const WordPair*)contact_ids)[i];
+        ATOMIC_ADD(masks + 2 * (ulong)contact.x + contact.y / 32u, 1u << contact.y % 32u);
     }
 }
 
-// The same by pair for each contact.
-KERNEL void count_contacts(GLOBAL const uint* contact_ids, uint capacity, GLOBAL uint* counts,
-                           GLOBAL uint* before, GLOBAL const uint* status) {
-    const uint rows = rows_in(status + STATUS_CONTACTS, capacity);
-    for (ulong i = GLOBAL_ID; i < rows; i += GLOBAL_COUNT)
-        before[i] = ATOMIC_ADD(counts + ((GLOBAL const WordPair*)contact_ids)[i].x, 1u);
+// What key i counts: of tetrahedra `counts`, of pairs (`by_pair`) the bits of their masks.
+DEVICE uint count_at(GLOBAL const uint* counts, uint i, uint by_pair) {
+    if (by_pair == 0u) return counts[i];
+    const WordPair mask = ((GLOBAL const WordPair*)counts)[i];
+    return COUNT_ONES(mask.x) + COUNT_ONES(mask.y);
 }
 
 // A work-item's share of the sum of values first..end - 1: those a fixed stride apart.
-DEVICE uint strided_sum(GLOBAL const uint* values, uint first, uint end) {
+DEVICE uint strided_sum(GLOBAL const uint* counts, uint first, uint end, uint by_pair) {
     uint sum = 0;
-    for (uint i = first + LOCAL_ID; i < end; i += (uint)GROUP_SIZE) sum += values[i];
+    for (uint i = first + LOCAL_ID; i < end; i += (uint)GROUP_SIZE) sum += count_at(counts, i, by_pair);
     return sum;
 }
 
@@ -49,7 +69,8 @@ KERNEL void sum_parts(GLOBAL const uint* counts, uint most, uint by_pair, GLOBAL
                       GLOBAL const uint* status) {
     LOCAL_ARRAY(uint, own_sums, GROUP_SIZE);
     const uint count = keys_in(status, most, by_pair);
-    own_sums[LOCAL_ID] = strided_sum(counts, group_first(GROUP_ID, count), group_first(GROUP_ID + 1u, count));
+    own_sums[LOCAL_ID] =
+        strided_sum(counts, group_first(GROUP_ID, count), group_first(GROUP_ID + 1u, count), by_pair);
     BARRIER;
     if (LOCAL_ID != 0u) return;
     uint all = 0;
@@ -72,15 +93,15 @@ DEVICE void scan(LOCAL uint* values) {
     }
 }
 
-// Turns the counts into the first place of each key.
-KERNEL void start_runs(GLOBAL uint* counts, uint most, uint by_pair, GLOBAL const uint* sums,
-                       GLOBAL const uint* status) {
+// The first place of each key. `starts`: may be `counts`.
+KERNEL void start_runs(GLOBAL const uint* counts, uint most, uint by_pair, GLOBAL const uint* sums,
+                       GLOBAL uint* starts, GLOBAL const uint* status) {
     LOCAL_ARRAY(uint, staged, GROUP_SIZE * EACH_STRIDE);
     LOCAL_ARRAY(uint, ends, GROUP_SIZE);
     const uint count = keys_in(status, most, by_pair);
     const uint end = group_first(GROUP_ID + 1u, count);
     uint first = group_first(GROUP_ID, count);
-    ends[LOCAL_ID] = strided_sum(sums, 0u, GROUP_ID);
+    ends[LOCAL_ID] = strided_sum(sums, 0u, GROUP_ID, 0u);
     BARRIER;
     scan(ends);
     uint start = ends[GROUP_SIZE - 1]; // the sum of the parts before this one
@@ -88,7 +109,8 @@ KERNEL void start_runs(GLOBAL uint* counts, uint most, uint by_pair, GLOBAL cons
     do { // runs at least once, as loops with barriers must
         const uint left = end - first;
         for (uint i = LOCAL_ID; i < COUNTS_EACH * (uint)GROUP_SIZE; i += (uint)GROUP_SIZE)
-            staged[i / COUNTS_EACH * EACH_STRIDE + i % COUNTS_EACH] = i < left ? counts[first + i] : 0u;
+            staged[i / COUNTS_EACH * EACH_STRIDE + i % COUNTS_EACH] =
+                i < left ? count_at(counts, first + i, by_pair) : 0u;
         BARRIER;
         uint sum = 0;
         for (uint i = 0; i < COUNTS_EACH; ++i) sum += own[i];
@@ -104,34 +126,20 @@ KERNEL void start_runs(GLOBAL uint* counts, uint most, uint by_pair, GLOBAL cons
         }
         BARRIER;
         for (uint i = LOCAL_ID; i < COUNTS_EACH * (uint)GROUP_SIZE && i < left; i += (uint)GROUP_SIZE)
-            counts[first + i] = staged[i / COUNTS_EACH * EACH_STRIDE + i % COUNTS_EACH];
+            starts[first + i] = staged[i / COUNTS_EACH * EACH_STRIDE + i % COUNTS_EACH];
         BARRIER;
         first = left > COUNTS_EACH * (uint)GROUP_SIZE ? first + COUNTS_EACH * (uint)GROUP_SIZE : end;
     } while (first < end);
 }
 
 // Puts the place of b of each pair at its place in the run of a.
-KERNEL void scatter_pairs(GLOBAL const uint* found, uint capacity, GLOBAL const uint* owners,
-                          GLOBAL const uint* ids, GLOBAL const uint* firsts, GLOBAL const uint* places,
-                          GLOBAL const uint* before, GLOBAL uint* keys, GLOBAL const uint* status) {
+KERNEL void scatter_pairs(GLOBAL const uint* found, uint capacity, GLOBAL const uint* firsts,
+                          GLOBAL const uint* places, GLOBAL const uint* starts, GLOBAL const uint* before,
+                          GLOBAL uint* keys, GLOBAL const uint* status) {
     const uint count = rows_in(status + STATUS_PAIRS, capacity);
     for (ulong i = GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
-        const PairMembers pair = members_of(found, i, owners);
-        const uint at = places[place_of(&pair.a, firsts, ids)] + before[i];
-        keys[at] = place_of(&pair.b, firsts, ids);
-    }
-}
-
-// Puts each contact at its place in its pair's run: its row number, and its feature as key.
-KERNEL void scatter_contacts(GLOBAL const uint* contact_ids, uint capacity, GLOBAL const uint* places,
-                             GLOBAL const uint* before, GLOBAL uint* rows, GLOBAL uint* keys,
-                             GLOBAL const uint* status) {
-    const uint count = rows_in(status + STATUS_CONTACTS, capacity);
-    for (ulong i = GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
-        const WordPair contact = ((GLOBAL const WordPair*)contact_ids)[i];
-        const uint at = places[contact.x] + before[i];
-        rows[at] = (uint)i;
-        keys[at] = contact.y;
+        const WordPair pair = places_of(found, i, firsts, places);
+        keys[starts[pair.x] + before[i]] = pair.y;
     }
 }
 
@@ -171,9 +179,9 @@ DEVICE void sort_run(GLOBAL uint* keys, uint first, uint end) {
 
 // Loads the runs of a team from key `key` - TEAM_LANE on. Keys from `count` on have no rows. `end`: the
 // number of all rows.
-DEVICE void load_starts(GLOBAL const uint* places, uint count, uint end, ulong key, LOCAL uint* starts) {
-    starts[TEAM_LANE] = key < count ? places[key] : end;
-    if (TEAM_LANE == TEAM_SIZE - 1u) starts[TEAM_SIZE] = key + 1u < count ? places[key + 1u] : end;
+DEVICE void load_starts(GLOBAL const uint* run_starts, uint count, uint end, ulong key, LOCAL uint* starts) {
+    starts[TEAM_LANE] = key < count ? run_starts[key] : end;
+    if (TEAM_LANE == TEAM_SIZE - 1u) starts[TEAM_SIZE] = key + 1u < count ? run_starts[key + 1u] : end;
 }
 
 // The run that contains `row`.
@@ -232,14 +240,14 @@ DEVICE void write_solids(GLOBAL uint* found, uint at, GLOBAL const uint* solids,
 }
 
 // Sorts the run of each of `count` keys, and writes it to `found`.
-KERNEL void sort_pairs(GLOBAL const uint* places, uint count, uint capacity, GLOBAL uint* keys,
+KERNEL void sort_pairs(GLOBAL const uint* run_starts, uint count, uint capacity, GLOBAL uint* keys,
                        GLOBAL const uint* solids, GLOBAL uint* found, GLOBAL const uint* status) {
     LOCAL_ARRAY(uint, all_starts, TEAM_COUNT * STARTS);
     LOCAL uint* starts = all_starts + TEAM_ID * STARTS;
     ulong key = GLOBAL_ID;
     ulong first_of_group = GROUP_ID * (ulong)GROUP_SIZE;
     do { // runs at least once, as loops with barriers must
-        load_starts(places, count, rows_in(status + STATUS_PAIRS, capacity), key, starts);
+        load_starts(run_starts, count, rows_in(status + STATUS_PAIRS, capacity), key, starts);
         TEAM_BARRIER;
         const uint first_key = (uint)key - TEAM_LANE;
         for (ulong i = (ulong)starts[0] + TEAM_LANE; i < starts[TEAM_SIZE]; i += TEAM_SIZE) {
@@ -262,54 +270,22 @@ KERNEL void sort_pairs(GLOBAL const uint* places, uint count, uint capacity, GLO
     } while (first_of_group < count);
 }
 
-typedef struct {
-    GLOBAL const uint* contact_ids;
-    GLOBAL const real* contact_values;
-    GLOBAL uint* sorted_ids;
-    GLOBAL real* sorted_values;
-} ContactRows;
-
-DEVICE void copy_contact(const ContactRows* contacts, uint to, uint from) {
-    ((GLOBAL WordPair*)contacts->sorted_ids)[to] = ((GLOBAL const WordPair*)contacts->contact_ids)[from];
-    GLOBAL const RealRow* values = (GLOBAL const RealRow*)contacts->contact_values + 2 * (ulong)from;
-    GLOBAL RealRow* sorted = (GLOBAL RealRow*)contacts->sorted_values + 2 * (ulong)to;
-    sorted[0] = values[0];
-    sorted[1] = values[1];
-}
-
-// Sorts the run of each of the pairs, and copies the contacts in this order. A pair has few contacts.
-KERNEL void sort_contacts(GLOBAL const uint* places, uint pair_capacity, uint capacity,
-                          GLOBAL const uint* rows, GLOBAL const uint* keys, GLOBAL const uint* contact_ids,
-                          GLOBAL const real* contact_values, GLOBAL uint* sorted_ids,
-                          GLOBAL real* sorted_values, GLOBAL const uint* status) {
-    LOCAL_ARRAY(uint, all_starts, TEAM_COUNT * STARTS);
-    LOCAL uint* starts = all_starts + TEAM_ID * STARTS;
-    const ContactRows contacts = {contact_ids, contact_values, sorted_ids, sorted_values};
-    const uint count = rows_in(status + STATUS_PAIRS, pair_capacity);
-    ulong key = GLOBAL_ID;
-    ulong first_of_group = GROUP_ID * (ulong)GROUP_SIZE;
-    do { // runs at least once, as loops with barriers must
-        load_starts(places, count, rows_in(status + STATUS_CONTACTS, capacity), key, starts);
-        TEAM_BARRIER;
-        for (ulong i = (ulong)starts[0] + TEAM_LANE; i < starts[TEAM_SIZE]; i += TEAM_SIZE) {
-            const uint row = (uint)i;
-            const uint run = run_of(starts, row);
-            copy_contact(&contacts, ranked_place(keys, starts[run], starts[run + 1u], row), rows[row]);
-        }
-        TEAM_BARRIER;
-        key += GLOBAL_COUNT;
-        first_of_group += GLOBAL_COUNT;
-    } while (first_of_group < count);
-}
-
-// Copies the sorted contacts back.
-KERNEL void return_contacts(GLOBAL const uint* sorted_ids, GLOBAL const real* sorted_values, uint capacity,
-                            GLOBAL uint* contact_ids, GLOBAL real* contact_values,
-                            GLOBAL const uint* status) {
+// Copies each contact to its place: `starts` has that of the first contact of each pair.
+KERNEL void place_contacts(GLOBAL const uint* contact_ids, GLOBAL const real* contact_values, uint capacity,
+                           GLOBAL const uint* masks, GLOBAL const uint* starts, GLOBAL uint* sorted_ids,
+                           GLOBAL real* sorted_values, GLOBAL const uint* status) {
     const uint count = rows_in(status + STATUS_CONTACTS, capacity);
     for (ulong i = GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
-        ((GLOBAL WordPair*)contact_ids)[i] = ((GLOBAL const WordPair*)sorted_ids)[i];
-        ((GLOBAL RealRow*)contact_values)[2 * i] = ((GLOBAL const RealRow*)sorted_values)[2 * i];
-        ((GLOBAL RealRow*)contact_values)[2 * i + 1] = ((GLOBAL const RealRow*)sorted_values)[2 * i + 1];
+        const WordPair contact = ((GLOBAL const WordPair*)contact_ids)[i];
+        const WordPair mask = ((GLOBAL const WordPair*)masks)[contact.x];
+        const uint below = (1u << contact.y % 32u) - 1u;
+        const ulong at = (ulong)starts[contact.x]
+                         + (contact.y < 32u ? COUNT_ONES(mask.x & below)
+                                            : COUNT_ONES(mask.x) + COUNT_ONES(mask.y & below));
+        ((GLOBAL WordPair*)sorted_ids)[at] = contact;
+        GLOBAL const RealRow* values = (GLOBAL const RealRow*)contact_values + 2 * i;
+        GLOBAL RealRow* sorted = (GLOBAL RealRow*)sorted_values + 2 * at;
+        sorted[0] = values[0];
+        sorted[1] = values[1];
     }
 }

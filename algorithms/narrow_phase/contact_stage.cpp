@@ -78,15 +78,15 @@ LaunchShape ContactStage::apart_shape() const {
     return shape;
 }
 
-/// Lists the pairs that meet among first..end - 1. Both lists must be empty before.
-void ContactStage::find_meeting(const AnswerBuffers& answer, std::uint32_t first, std::uint32_t end,
-                                const Status& status) {
+/// Lists the pairs that meet. Both lists must be empty before.
+void ContactStage::find_meeting(const Range& range) {
     auto& device = bodies_.device();
     const auto shape = apart_shape();
     const Grid grid{shape.groups, shape.group_size};
-    const kernels::certify::CertifyPairs certify{.found = answer.pairs.buffer(),
-                                                 .first = first,
-                                                 .pair_capacity = end,
+    const auto& status = range.status;
+    const kernels::certify::CertifyPairs certify{.found = range.pairs,
+                                                 .first = range.first,
+                                                 .pair_capacity = range.end,
                                                  .owners = bodies_.owners(),
                                                  .poses = bodies_.poses(),
                                                  .tetrahedra = bodies_.tetrahedra(),
@@ -98,9 +98,9 @@ void ContactStage::find_meeting(const AnswerBuffers& answer, std::uint32_t first
                                                  .status = status.buffer()};
     device.launch(certify_, grid, certify);
     if (decides_open())
-        decision_->launch_open(answer.pairs.buffer(), first, end, waiting_.buffer(LIST_OPEN), status);
-    const kernels::separate::SeparatePairs separate{.found = answer.pairs.buffer(),
-                                                    .first = first,
+        decision_->launch_open(range.pairs, range.first, range.end, waiting_.buffer(LIST_OPEN), status);
+    const kernels::separate::SeparatePairs separate{.found = range.pairs,
+                                                    .first = range.first,
                                                     .owners = bodies_.owners(),
                                                     .poses = bodies_.poses(),
                                                     .tetrahedra = bodies_.tetrahedra(),
@@ -112,14 +112,13 @@ void ContactStage::find_meeting(const AnswerBuffers& answer, std::uint32_t first
     device.launch(separate_, grid, separate);
 }
 
-/// Makes contacts of the listed pairs that meet, or of pairs first..end - 1.
+/// Makes contacts of the listed pairs that meet, or of all in the range.
 void ContactStage::generate(const KernelOf<kernels::contacts::GenerateContacts>& kernel, LaunchShape shape,
-                            const AnswerBuffers& answer, std::uint32_t first, std::uint32_t end,
-                            const Status& status) {
+                            const Range& range, const ContactRows& contacts) {
     const kernels::contacts::GenerateContacts arguments{
-        .found = answer.pairs.buffer(),
-        .first = first,
-        .pair_capacity = end,
+        .found = range.pairs,
+        .first = range.first,
+        .pair_capacity = range.end,
         .owners = bodies_.owners(),
         .poses = bodies_.poses(),
         .tetrahedra = bodies_.tetrahedra(),
@@ -127,15 +126,15 @@ void ContactStage::generate(const KernelOf<kernels::contacts::GenerateContacts>&
         .boundary = bodies_.boundary(),
         .verdicts = verdicts(),
         .meeting = waiting_.capacity() > 0 ? waiting_.buffer(LIST_MEETING) : nothing_,
-        .contact_ids = answer.contacts.buffer(contact_ids),
-        .contact_values = answer.contacts.buffer(contact_values),
-        .contact_capacity = answer.contacts.capacity(),
-        .status = status.buffer()};
+        .contact_ids = contacts.ids,
+        .contact_values = contacts.values,
+        .contact_capacity = contacts.capacity,
+        .status = range.status.buffer()};
     bodies_.device().launch(kernel, {shape.groups, shape.group_size}, arguments);
 }
 
-void ContactStage::launch(const AnswerBuffers& answer, std::uint64_t first, std::uint64_t end,
-                          const Status& status) {
+void ContactStage::launch(const Buffer& pairs, const ContactRows& contacts, std::uint64_t first,
+                          std::uint64_t end, const Status& status) {
     auto& device = bodies_.device();
     const StageScope scope(device, Stage::contact);
     // With at most one pair per running work-item, the latency of one pair and the number of launches
@@ -143,24 +142,24 @@ void ContactStage::launch(const AnswerBuffers& answer, std::uint64_t first, std:
     const bool few = expected_ && *expected_ <= std::uint64_t{few_shape_.groups} * few_shape_.group_size / 2;
     const bool at_once = at_once_ && (few || !generate_);
     if (decision_) decision_->reserve(end);
-    if (decision_ && (at_once || !decides_open()))
-        decision_->launch(answer.pairs.buffer(), first, end, status);
+    if (decision_ && (at_once || !decides_open())) decision_->launch(pairs, first, end, status);
     if (at_once) {
         auto shape = few_shape_;
         const auto size = shape.group_size;
         if (few) shape.groups = groups_.groups_for((*expected_ + size - 1) / size, shape.groups);
-        generate(at_once_, shape, answer, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(end),
-                 status);
+        generate(at_once_, shape,
+                 {pairs, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(end), status},
+                 contacts);
         return;
     }
     reserve_lists(end - first);
     bool waiting = status.counter(STATUS_WAITING) != 0; // pairs of an earlier launch
     for (auto from = first; from < end; from += waiting_.capacity()) {
         if (waiting) device.clear(status.buffer(), STATUS_WAITING_WORDS * 4, STATUS_WAITING * 4);
-        const auto begin = static_cast<std::uint32_t>(from);
-        const auto to = static_cast<std::uint32_t>(std::min(end, from + waiting_.capacity()));
-        find_meeting(answer, begin, to, status);
-        generate(generate_, apart_shape(), answer, begin, to, status);
+        const Range range{pairs, static_cast<std::uint32_t>(from),
+                          static_cast<std::uint32_t>(std::min(end, from + waiting_.capacity())), status};
+        find_meeting(range);
+        generate(generate_, apart_shape(), range, contacts);
         waiting = true;
     }
 }

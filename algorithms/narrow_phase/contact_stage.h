@@ -29,9 +29,10 @@ public:
     /// Sets the expected number of pairs of the next launches; unknown before the first call. No answer
     /// depends on it.
     void expect(std::uint64_t pairs) { expected_ = pairs; }
-    /// Enqueues contact generation for pairs `first`..`end` - 1 of the answer, up to the count in the status.
+    /// Enqueues contact generation for rows `first`..`end` - 1 of `pairs`, up to the count in the status.
     /// Contacts are appended to those that the status already counts. Throws OutOfMemory.
-    void launch(const AnswerBuffers& answer, std::uint64_t first, std::uint64_t end, const Status& status);
+    void launch(const Buffer& pairs, const ContactRows& contacts, std::uint64_t first, std::uint64_t end,
+                const Status& status);
 
     /// Reserves what launches of at most `pairs` pairs need. Throws OutOfMemory.
     void reserve(std::uint64_t pairs);
@@ -39,10 +40,16 @@ public:
 private:
     void reserve_lists(std::uint64_t pairs);
     LaunchShape apart_shape() const;
-    void find_meeting(const AnswerBuffers& answer, std::uint32_t first, std::uint32_t end,
-                      const Status& status);
+    /// Rows first..end - 1 of the candidate pairs, and the counts of their frame.
+    struct Range {
+        const Buffer& pairs;
+        std::uint32_t first, end;
+        const Status& status;
+    };
+
+    void find_meeting(const Range& range);
     void generate(const KernelOf<kernels::contacts::GenerateContacts>& kernel, LaunchShape shape,
-                  const AnswerBuffers& answer, std::uint32_t first, std::uint32_t end, const Status& status);
+                  const Range& range, const ContactRows& contacts);
     /// Whether only the pairs that certificates leave open need verdicts.
     bool decides_open() const { return decision_ && decision_->uses_certificates(); }
     const Buffer& verdicts() const { return decision_ ? decision_->verdicts() : nothing_; }

@@ -136,7 +136,7 @@ void BatchRun::make_contacts(HostPart& host, std::uint64_t pairs) {
     for (std::uint64_t first = 0; first < pairs;) {
         const auto end = std::min(pairs, first + step);
         status.write(words);
-        pipeline_.contacts->launch(*answer_, first, end, status);
+        pipeline_.contacts->launch(answer_->pairs.buffer(), ContactRows(*answer_), first, end, status);
         status.read();
         const auto made = status.counter(STATUS_CONTACTS);
         const auto capacity = answer_->contacts.capacity();

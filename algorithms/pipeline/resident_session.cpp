@@ -96,7 +96,9 @@ void ResidentSession::walk(const AnswerBuffers& answer) {
     pipeline_.stages.walker->launch(task);
     if (pipeline_.order) pipeline_.order->sort_pairs(answer, pipeline_.status);
     if (!pipeline_.makes_contacts()) return;
-    pipeline_.contacts->launch(answer, 0, answer.pairs.capacity(), pipeline_.status);
+    pipeline_.contacts->launch(answer.pairs.buffer(),
+                               pipeline_.order ? pipeline_.order->unsorted(answer) : ContactRows(answer), 0,
+                               answer.pairs.capacity(), pipeline_.status);
     if (pipeline_.order) pipeline_.order->sort_contacts(answer, pipeline_.status);
 }
 

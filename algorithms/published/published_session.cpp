@@ -32,7 +32,8 @@ void ContactsBetween::part_walked() {
     const auto found = pipeline_.status.counter(STATUS_PAIRS);
     const std::uint64_t written = std::min<std::uint64_t>(found, answer_.pairs.capacity());
     if (written > pairs_ && pipeline_.makes_contacts()) {
-        pipeline_.contacts->launch(answer_, pairs_, answer_.pairs.capacity(), pipeline_.status);
+        pipeline_.contacts->launch(answer_.pairs.buffer(), ContactRows(answer_), pairs_,
+                                   answer_.pairs.capacity(), pipeline_.status);
         pipeline_.status.read();
         read_new(
             std::min<std::uint64_t>(pipeline_.status.counter(STATUS_CONTACTS), answer_.contacts.capacity()));
