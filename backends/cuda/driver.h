@@ -43,7 +43,12 @@ enum DeviceAttribute : int {
     capability_major = 75,
     capability_minor = 76
 };
-enum FunctionAttribute : int { function_max_threads = 0, function_shared_bytes = 1, function_registers = 4 };
+enum FunctionAttribute : int {
+    function_max_threads = 0,
+    function_shared_bytes = 1,
+    function_private_bytes = 3,
+    function_registers = 4
+};
 
 // ENTRY(symbol in the library, arguments); each returns Result.
 #define TANDEM_CUDA_ENTRIES(ENTRY)                                                                           \

@@ -101,9 +101,12 @@ void Modules::finish(CudaKernel& kernel, Loaded& loaded) const {
     facts.registers = attribute(function_registers);
     facts.local_bytes = attribute(function_shared_bytes);
     facts.max_group_size = attribute(function_max_threads);
+    // NVRTC has a cache of its own since CUDA 12.9, whose images have no log. Without private memory nothing
+    // spills.
     const auto use = use_of(image.log, facts.entry);
-    facts.spill_bytes = use.spill_bytes;
-    facts.stack_bytes = use.stack_bytes;
+    const auto bytes = attribute(function_private_bytes);
+    facts.spill_bytes = use.spill_bytes < 0 && bytes == 0 ? 0 : use.spill_bytes;
+    facts.stack_bytes = use.stack_bytes < 0 ? bytes : use.stack_bytes;
     facts.occupancy = occupancy(kernel.function, facts.defines);
 }
 

@@ -114,6 +114,7 @@ class Answer:
             "frame ratios": self._ratios("total"),
             "walk ratios": self._ratios("walk"),
             "published": self._times("total", PUBLISHED, ("paper", "chunked published")),
+            "kernels": kernel_table(records(FOLDER / "profile.jsonl")),
         }
 
     def first_lines(self):
@@ -204,6 +205,33 @@ class Answer:
             ax.legend(loc="upper right", frameon=False)
             figure.savefig(path, metadata={"Date": None})
             plt.close(figure)
+
+
+def kernel_table(found):
+    """The kernels that take at least 5 % of the time of their frame's kernels."""
+    rows = []
+    for record in found:
+        name = " ".join(filter(None, (record["algorithm"], record["preset"])))
+        for kernel in record["kernels"]:
+            if kernel["share"] < 0.05:
+                continue
+            counters = kernel["counters"]
+            rows.append(
+                [
+                    f"{scene_name(record['scene']['key'])}: {name}",
+                    f"`{kernel['entry']}`",
+                    text(kernel["device_ns"]["median"] / 1e3),
+                    f"{100 * kernel['share']:.0f} %",
+                    text(kernel["over_floor"]),
+                    f"{counters['sm_percent']:.0f} %",
+                    f"{counters['occupancy_percent']:.0f} %",
+                    str(kernel["registers"]),
+                    f"{kernel['local_bytes'] / 1024:.1f}",
+                    counters["top_stall"].replace("_", " "),
+                ]
+            )
+    heads = "scene: walk|kernel|us per frame|of the kernels|times its floor|issue slots|occupancy"
+    return markdown.table([*heads.split("|"), "registers", "KiB a group", "main stall"], rows).rstrip("\n")
 
 
 def claimed():

@@ -268,6 +268,17 @@ TEST(Nvrtc, ContactsByBoundaryFacesHaveNoStack) {
     EXPECT_EQ(checked, 2 * 2 * 4); // certify_pairs, separate_pairs and generate_contacts, also at once
 }
 
+/// Without the instructions that a kernel's text contains itself.
+std::string chosen_by_compiler(std::string_view ptx) {
+    constexpr std::string_view begin = "// begin inline asm", end = "// end inline asm";
+    std::string rest;
+    for (auto at = ptx.find(begin); at != std::string_view::npos; at = ptx.find(begin)) {
+        rest += ptx.substr(0, at);
+        ptx.remove_prefix(ptx.find(end, at) + end.size());
+    }
+    return rest.append(ptx);
+}
+
 TEST(Nvrtc, NoFusedMultiplyAddLong) {
     const auto programs = defaults();
     if (!can_compile(programs)) return;
@@ -277,7 +288,8 @@ TEST(Nvrtc, NoFusedMultiplyAddLong) {
         if (counts && !support::long_form()) return; // its operations are those of the other build
         const auto ptx = nvrtc()->compile(source, defines, 90, true).bytes;
         EXPECT_NE(ptx.find(".visible .entry"), std::string::npos);
-        EXPECT_EQ(ptx.find("fma.rn.f"), std::string::npos) << source.name << text_of(defines);
+        EXPECT_EQ(chosen_by_compiler(ptx).find("fma.rn.f"), std::string::npos)
+            << source.name << text_of(defines);
     });
 }
 
