@@ -112,7 +112,7 @@ class Cell:
     @property
     def on_gpus(self):
         devices = self.record["devices"]
-        return bool(devices) and all(device["kind"] == "gpu" for device in devices)
+        return bool(devices) and all(device.get("kind") == "gpu" for device in devices)
 
     @property
     def chosen(self):
