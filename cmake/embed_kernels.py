@@ -6,9 +6,11 @@ A kernel file says in one line of which defines its host code is compiled once f
 has loops over lanes, which are compiled for several levels of x86-64:
 
     // Host variants: AXES K PRECISION SLABS=0|1, in lanes; of higher levels: PRECISION=32 SLABS=1
+    // Host constants: MOTION PLACEMENT
 
 AXES, K and PRECISION have the values of the build's geometries. Levels above the lowest have only variants with
-the values that follow "of higher levels". All other defines are variables of the host code."""
+the values that follow "of higher levels". All other defines are variables of the host code. Levels above the
+lowest have each variant twice if the text names constants: once with the defaults of these defines."""
 
 import argparse
 import dataclasses
@@ -22,6 +24,7 @@ import kernel_arguments
 INCLUDE = re.compile(r'^#include "([^"]+)"')
 DEFAULT = re.compile(r"^#ifndef (\w+)\n#define \1 (\d+)$", re.M)
 VARIANTS = re.compile(r"^// Host variants: (.*?)(, in lanes)?(?:; of higher levels: (.*))?$", re.M)
+CONSTANTS = re.compile(r"^// Host constants: (.*)$", re.M)
 OF_GEOMETRY = {"AXES", "K", "PRECISION"}
 LANES = re.compile(r"^(?!#define|//).*\bFOR_LANES\b|^#define IN_PACKS$", re.M)
 
@@ -80,7 +83,7 @@ def sources(kernels, own):
 class Kernel:
     """A kernel file. text: with its headers. geometry: names of defines that the build gives values for;
     choices: [["SLABS=0"], ["SLABS=1"]], other defines for each variant; on_higher: values that levels above the
-    lowest are limited to."""
+    lowest are limited to; usual: names of defines whose defaults are constants in variants of their own."""
 
     name: str
     text: str
@@ -89,6 +92,7 @@ class Kernel:
     choices: list = dataclasses.field(default_factory=list)
     in_lanes: bool = False
     on_higher: set = dataclasses.field(default_factory=set)
+    usual: list = dataclasses.field(default_factory=list)
 
     def __post_init__(self):
         """Raises ValueError where the line of variants does not fit the text."""
@@ -102,6 +106,9 @@ class Kernel:
             itertools.product(*([f"{name}={value}" for value in values.split("|")] for name, values in lists))
         )
         self.in_lanes, self.on_higher = bool(lanes), set(on_higher.split())
+        self.usual = " ".join(CONSTANTS.findall(self.own_text)).split()
+        for name in set(self.usual) - dict(DEFAULT.findall(self.text)).keys():
+            raise ValueError(f"{self.name}: the text has no default of {name}")
         for name in {*OF_GEOMETRY, *self.geometry, *(name for name, _ in lists)}:
             is_listed = name in self.geometry or name in (pair[0] for pair in lists)
             if is_listed != bool(re.search(rf"\b{name}\b", VARIANTS.sub("", self.text))):
@@ -121,15 +128,14 @@ class Kernel:
         return self.on_higher <= has and is_of_k
 
 
-def variant_code(kernel, defines, scope, identifier, level):
+def variant_code(kernel, defines, constants, scope, level):
     """Code of one variant, in a namespace of its own because types of one name differ between variants, and its
-    rows in the table."""
+    rows in the table. constants: names of defines that are no variables but have their defaults."""
     fixed = dict(pair.split("=") for pair in defines)
-    defaults = {
-        key: value
-        for key, value in sorted(DEFAULT.findall(kernel.text))
-        if key not in fixed and key != "GROUP_SIZE"
-    }
+    found = dict(sorted(DEFAULT.findall(kernel.text)))
+    usual = {key: found[key] for key in constants}
+    fixed |= usual
+    defaults = {key: value for key, value in found.items() if key not in fixed and key != "GROUP_SIZE"}
     out = [f"namespace {scope} {{", "#undef TANDEM_PORTABLE_H"]
     out += [f"#define {key} {value}" for key, value in fixed.items()] + ["#define GROUP_SIZE 1"]
     if kernel.in_lanes:  # nothing is shared with files that are compiled for other processors
@@ -137,7 +143,7 @@ def variant_code(kernel, defines, scope, identifier, level):
     for key, value in defaults.items():
         out.append(f"static constinit thread_local long runtime_{key} = {value};")
         out.append(f"#define {key} runtime_{key}")
-    out += [kernel.text, f'#line 1 "{identifier}"', "static const tandem::host::RuntimeDefine runtime[] = {"]
+    out += [kernel.text, f'#line 1 "{scope}"', "static const tandem::host::RuntimeDefine runtime[] = {"]
     out += [
         f'{{"{key}", [](long to) {{ runtime_{key} = to; }}, {value}}},' for key, value in defaults.items()
     ]
@@ -149,7 +155,8 @@ def variant_code(kernel, defines, scope, identifier, level):
         call = f"tandem::host::Invoke<&{scope}::{entry}>"
         rows.append(
             f'{{"{kernel.name}", "{entry}", "{";".join(defines)}", {call}::run, {call}::count, '
-            f"{{{scope}::runtime, {len(defaults)}}}, {level}}},"
+            f"{{{scope}::runtime, {len(defaults)}}}, {level}, "
+            f'"{"".join(f"{key}={value};" for key, value in usual.items())}"}},'
         )
     return out, rows
 
@@ -166,10 +173,11 @@ def host_variant(kernels, geometry, geometries, identifier, level, higher_k):
         for choice, defines in enumerate(own):
             if higher_k is not None and not kernel.is_on_higher(defines, higher_k):
                 continue
-            scope = f"{identifier}_kernel_{number}_{choice}"
-            code, own_rows = variant_code(kernel, defines, scope, identifier, level)
-            out += code
-            rows += own_rows
+            for constants in [[], kernel.usual] if kernel.usual and higher_k is not None else [[]]:
+                scope = f"{identifier}_kernel_{number}_{choice}{'_usual' if constants else ''}"
+                code, own_rows = variant_code(kernel, defines, constants, scope, level)
+                out += code
+                rows += own_rows
     if not rows:
         return ""
     out += [

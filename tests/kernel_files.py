@@ -68,6 +68,16 @@ class KernelFiles(unittest.TestCase):
         self.assertEqual(errors, "")
         self.assertEqual([self.variants(out, level) for level in ("", "v2_", "v4_")], [0, 4, 1])
 
+    def test_constants_make_variants_of_higher_levels(self):
+        line = "// Host variants: K PRECISION, in lanes; of higher levels: PRECISION=32\n// Host constants: MOTION\n"
+        default = "#ifndef MOTION\n#define MOTION 3\n#endif\n"
+        errors, out = self.embed(line + default + KERNEL.replace("K;", "K; FOR_LANES {}"))
+        self.assertEqual(errors, "")
+        self.assertEqual([self.variants(out, level) for level in ("v2_", "v4_")], [2, 2])
+        higher = "".join(path.read_text() for path in out.glob("host_v4_*.cpp"))
+        self.assertEqual(higher.count("#define MOTION 3\n"), 1 + higher.count(default))
+        self.assertIn('"MOTION=3;"}', higher)
+
     def test_mistakes_are_one_line(self):
         for text, expected in (
             (KERNEL, "one.cl: 0 lines '// Host variants: ...' instead of one"),
@@ -75,6 +85,7 @@ class KernelFiles(unittest.TestCase):
             (VARIANTS + KERNEL.replace("K;", ""), "differ in whether they name K"),
             (VARIANTS + KERNEL.replace("K;", "K; AXES;"), "differ in whether they name AXES"),
             (VARIANTS + KERNEL.replace("K;", "K; FOR_LANES {}"), "differ in whether they have lanes"),
+            (VARIANTS + "// Host constants: N\n" + KERNEL, "one.cl: the text has no default of N"),
             (VARIANTS + KERNEL.replace("ulong", "float"), "kernel add_words: parameter 'float first' is"),
             (VARIANTS + KERNEL.replace("GLOBAL real*", "real*"), "kernel add_words: parameter 'real* to' is"),
         ):

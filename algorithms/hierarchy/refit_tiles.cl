@@ -3,6 +3,7 @@
 // from the roots of the level below. Each vertex of a tile is transformed once, into local memory, not once
 // per tetrahedron that shares it.
 // Host variants: AXES K PRECISION SLABS=0|1, in lanes; of higher levels: PRECISION=32 SLABS=1
+// Host constants: MOTION PLACEMENT ROUNDING
 #include "backends/portable.h"
 #include "algorithms/hierarchy/tiles.clh"
 

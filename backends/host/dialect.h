@@ -181,6 +181,158 @@ template<class Pack>
     return numbers;
 }
 
+// Boxes of 32 lanes: one row of their lower ends and one of their upper ends for each direction. With 8
+// planes or more, g++ 12 makes no vector code of loops over the lanes.
+
+#if defined(__AVX512F__)
+constexpr std::size_t pack_bytes = 64, registers = 32;
+#elif defined(__AVX2__)
+constexpr std::size_t pack_bytes = 32, registers = 16;
+#else
+constexpr std::size_t pack_bytes = 16, registers = 16;
+#endif
+
+/// The ends of one box, and the gap beyond which it is apart from another: 0, or a published tolerance.
+template<class Real>
+struct Ends {
+    const Real *lower, *upper;
+    Real tolerance;
+};
+
+/// Boxes of as many lanes as a vector register has elements.
+template<std::size_t words, class Real>
+struct LaneBoxes {
+    typedef Real Pack __attribute__((vector_size(pack_bytes)));
+    using Flag = std::conditional_t<sizeof(Real) == 4, int, long>;
+    typedef Flag Flags __attribute__((vector_size(pack_bytes)));
+    static constexpr std::size_t size = pack_bytes / sizeof(Real), directions = words / 2;
+    typedef uint Words __attribute__((vector_size(4 * size)));
+
+    Pack ends[words];
+
+    [[gnu::always_inline]] void load(const Real (*box)[32], std::size_t first) {
+        for (std::size_t word = 0; word < words; ++word)
+            __builtin_memcpy(&ends[word], box[word] + first, sizeof(Pack));
+    }
+
+    /// All bits set: apart from the box along one of the directions.
+    [[gnu::always_inline]] Flags apart_from(const Ends<Real>& box) const {
+        Flags apart{};
+        if (box.tolerance == 0) {
+            for (std::size_t d = 0; d < directions; ++d)
+                apart |= (box.lower[d] > ends[directions + d]) | (ends[d] > box.upper[d]);
+        } else {
+            for (std::size_t d = 0; d < directions; ++d)
+                apart |= (box.lower[d] - ends[directions + d] > box.tolerance)
+                         | (ends[d] - box.upper[d] > box.tolerance);
+        }
+        return apart;
+    }
+};
+
+/// Boxes as rows of `stride` reals, lower ends first, with a bit each.
+template<class Real>
+struct Rows {
+    const Real* ends;
+    std::size_t stride;
+    const uint* bits;
+    uint count;
+};
+
+/// The bits of the rows that each lane's box overlaps.
+template<std::size_t words, class Real>
+[[gnu::always_inline]] inline void find_hits(const Rows<Real>& rows, const Real (*box)[32], Real tolerance,
+                                             uint (&hits)[32]) {
+    using Boxes = LaneBoxes<words, Real>;
+    constexpr std::size_t packs = 2 * words < registers ? 2 : 1; // at once, whose boxes stay in registers
+    for (std::size_t first = 0; first < 32; first += packs * Boxes::size) {
+        Boxes boxes[packs];
+        typename Boxes::Flags found[packs]{};
+        for (std::size_t i = 0; i < packs; ++i) boxes[i].load(box, first + i * Boxes::size);
+        for (uint r = 0; r < rows.count; ++r) {
+            const Real* row = rows.ends + r * rows.stride;
+            for (std::size_t i = 0; i < packs; ++i)
+                found[i] |= ~boxes[i].apart_from({row, row + words / 2, tolerance})
+                            & static_cast<typename Boxes::Flag>(rows.bits[r]);
+        }
+        for (std::size_t i = 0; i < packs; ++i) {
+            const auto of_lanes = __builtin_convertvector(found[i], typename Boxes::Words);
+            __builtin_memcpy(hits + first + i * Boxes::size, &of_lanes, sizeof(of_lanes));
+        }
+    }
+}
+
+/// Clears the marks (1 or 0) of lanes whose boxes are apart from one box.
+template<std::size_t words, class Real>
+[[gnu::always_inline]] inline void leave_out_apart(const Ends<Real>& one, const Real (*box)[32],
+                                                   uint (&keeps)[32]) {
+    using Boxes = LaneBoxes<words, Real>;
+    for (std::size_t first = 0; first < 32; first += Boxes::size) {
+        Boxes boxes;
+        boxes.load(box, first);
+        typename Boxes::Words kept;
+        __builtin_memcpy(&kept, keeps + first, sizeof(kept));
+        kept &= __builtin_convertvector(boxes.apart_from(one) + 1, typename Boxes::Words);
+        __builtin_memcpy(keeps + first, &kept, sizeof(kept));
+    }
+}
+
+/// Bit i: value i of 32 is not 0.
+[[gnu::always_inline]] inline uint nonzero_of(const uint (&values)[32]) {
+#ifdef __AVX512F__
+    const auto half = [&](int first) {
+        const auto of_half = _mm512_loadu_si512(values + first);
+        return uint{_mm512_test_epi32_mask(of_half, of_half)};
+    };
+    return half(0) | half(16) << 16;
+#else
+    uint bits = 0;
+    for (uint i = 0; i < 32; ++i) bits |= (values[i] != 0 ? 1u : 0u) << i;
+    return bits;
+#endif
+}
+
+/// Numbers of a tile's row 0 and lane 0, and which of the two words of a pair is the row's.
+struct PairWords {
+    uint first_row, first_lane;
+    bool row_first;
+};
+
+/// Stores a pair of a row and a lane for each bit of the lane's `rows`; returns their number. It stores up to
+/// eight pairs more, because the number of bits is not foreseen.
+template<class Pair>
+[[gnu::always_inline]] inline uint put_pairs(Pair* to, uint rows, uint lane, const PairWords& words) {
+    static_assert(sizeof(Pair) == 8);
+    const uint lane_number = words.first_lane + lane;
+    const auto count = static_cast<uint>(std::popcount(rows));
+#ifdef __AVX512F__
+    const auto counted = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    const auto lane_word = _mm512_set1_epi64(static_cast<long long>(
+        words.row_first ? std::uint64_t{lane_number} << 32 : std::uint64_t{lane_number}));
+    const auto shift = _mm_cvtsi32_si128(words.row_first ? 0 : 32);
+    const auto store = [&](Pair* at, __m256i eight) {
+        const auto row_word = _mm512_sll_epi64(_mm512_cvtepu32_epi64(eight), shift);
+        _mm512_storeu_si512(at, _mm512_or_si512(row_word, lane_word));
+    };
+    for (uint first = 0; first < 32; first += 16) {
+        const auto of_half = static_cast<__mmask16>(rows >> first);
+        const auto numbers =
+            _mm512_add_epi32(counted, _mm512_set1_epi32(static_cast<int>(words.first_row + first)));
+        const auto packed = _mm512_maskz_compress_epi32(of_half, numbers);
+        store(to, _mm512_castsi512_si256(packed));
+        const int of_row = std::popcount(static_cast<uint>(of_half));
+        if (of_row > 8) store(to + 8, _mm512_extracti64x4_epi64(packed, 1));
+        to += of_row;
+    }
+#else
+    for (; rows != 0; rows &= rows - 1, ++to) {
+        const uint row = words.first_row + static_cast<uint>(std::countr_zero(rows));
+        *to = words.row_first ? Pair{row, lane_number} : Pair{lane_number, row};
+    }
+#endif
+    return count;
+}
+
 struct HostBuffer : Buffer::Impl {
     void* native() const override { return data; }
     std::unique_ptr<std::byte[]> storage;
@@ -203,6 +355,8 @@ struct HostKernel {
     std::size_t argument_count;
     std::span<const RuntimeDefine> runtime;
     int level; ///< of its instructions: x86-64-v2, -v3 or -v4; 0: any processor
+    /// Other defines that are compiled, with their defaults: "MOTION=0;ROUNDING=1;".
+    std::string_view constants = {};
 };
 
 /// Kernels of the project by variant (generated).

@@ -232,14 +232,28 @@ std::vector<std::span<const HostKernel>>& known_variants() {
     return all;
 }
 
-/// The kernel with the highest level that the device may use.
+bool is_constant(const HostKernel& row, std::string_view name) {
+    return row.constants.find(fmt::format("{}=", name)) != std::string_view::npos;
+}
+
+/// Whether the defines that are constants in the kernel have these values.
+bool has_constants(const HostKernel& row, const Defines& defines) {
+    return std::all_of(defines.begin(), defines.end(), [&](const auto& define) {
+        const auto& [name, value] = define;
+        return !is_constant(row, name)
+               || row.constants.find(fmt::format("{}={};", name, value)) != std::string_view::npos;
+    });
+}
+
+/// The kernel with the highest level that the device may use, and of these the one with most constants.
 const HostKernel* find_row(std::string_view source, std::string_view entry, std::string_view fixed,
-                           int level) {
+                           const Defines& rest, int level) {
     const HostKernel* best = nullptr;
+    const auto rank = [](const HostKernel& row) { return std::pair(row.level, row.constants.size()); };
     for (const auto& variant : known_variants())
         for (const auto& row : variant)
             if (row.source == source && row.entry == entry && row.defines == fixed && row.level <= level
-                && (!best || row.level > best->level))
+                && has_constants(row, rest) && (!best || rank(row) > rank(*best)))
                 best = &row;
     return best;
 }
@@ -247,7 +261,7 @@ const HostKernel* find_row(std::string_view source, std::string_view entry, std:
 std::shared_ptr<Kernel::Impl> HostDevice::do_compile(const KernelSource& source, std::string_view entry,
                                                      const Defines& defines) {
     const auto [fixed, rest] = split(defines);
-    const auto* row = find_row(source.name, entry, fixed, level_);
+    const auto* row = find_row(source.name, entry, fixed, rest, level_);
     if (!row)
         throw DeviceError(fmt::format(
             "host: kernel '{}' of {} is not compiled for {}; the host has values of setting k, in "
@@ -258,6 +272,7 @@ std::shared_ptr<Kernel::Impl> HostDevice::do_compile(const KernelSource& source,
     impl->row = row;
     for (const auto& define : row->runtime) impl->runtime.emplace_back(define.set, define.initial);
     for (const auto& [name, value] : rest) {
+        if (is_constant(*row, name)) continue;
         if (name == "GROUP_SIZE") {
             if (value != "1")
                 throw DeviceError("host: groups have one work-item; set group_size=1 or leave it out");
