@@ -26,11 +26,10 @@ typedef struct {
 
 DEVICE void write_tile_pairs(const UpperWalk* walk, const Team* team, uint waiting) {
     const ulong start = *team->place;
-    const ulong room = start < walk->capacity ? walk->capacity - start : 0u;
-    GLOBAL WordPair* rows = (GLOBAL WordPair*)walk->below + start;
-    for (uint i = LANE_ID; i < waiting && i < room; i += (uint)LANE_STEP) {
+    for (uint i = LANE_ID; i < waiting; i += (uint)LANE_STEP) {
+        if (start + i >= walk->capacity) continue;
         const WordPair pair = team->pairs[i];
-        rows[i] = pair;
+        ((GLOBAL WordPair*)walk->below)[start + i] = pair;
         if (walk->marked != 0u) walk->marks[pair.x] = walk->marks[pair.y] = 1u;
     }
 }
