@@ -28,7 +28,9 @@ class ResultsPage(ScriptCase):
         (self.results / "submitted").mkdir()
         work = lambda record: (record["scene"]["digest"], record["settings"]["k"])
         found = [
-            one for one in committed("cpu/walks.jsonl") if one["scene"]["name"] == "pile" and one["agreement"]
+            one
+            for one in committed("cpu/walks.jsonl")
+            if one["scene"].get("name") == "pile" and one["agreement"]
         ]
         self.base = [record for record in found if work(record) == work(found[0])][:3]
         self.file("results/cpu/walks.jsonl", self.base)
