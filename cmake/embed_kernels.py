@@ -9,8 +9,8 @@ has loops over lanes, which are compiled for several levels of x86-64:
     // Host constants: MOTION PLACEMENT
 
 AXES, K and PRECISION have the values of the build's geometries. Levels above the lowest have only variants with
-the values that follow "of higher levels". All other defines are variables of the host code. Levels above the
-lowest have each variant twice if the text names constants: once with the defaults of these defines."""
+the values that follow "of higher levels". All other defines are variables of the host code. Levels above
+x86-64-v2 have these variants twice if the text names constants: once with the defaults of these defines."""
 
 import argparse
 import dataclasses
@@ -173,7 +173,8 @@ def host_variant(kernels, geometry, geometries, identifier, level, higher_k):
         for choice, defines in enumerate(own):
             if higher_k is not None and not kernel.is_on_higher(defines, higher_k):
                 continue
-            for constants in [[], kernel.usual] if kernel.usual and higher_k is not None else [[]]:
+            has_usual = kernel.usual and level > 2 and kernel.is_on_higher(defines, higher_k)
+            for constants in [[], kernel.usual] if has_usual else [[]]:
                 scope = f"{identifier}_kernel_{number}_{choice}{'_usual' if constants else ''}"
                 code, own_rows = variant_code(kernel, defines, constants, scope, level)
                 out += code
