@@ -18,9 +18,9 @@
 // Tiles whose marks a team of bound_touched_tiles reads at once.
 #define TILES_A_TURN 8u
 
-// The lanes' values of one word are adjacent. Words lie LANES + 1 reals apart, so that the values of one lane
-// use different banks, too.
-#define ROW (LANES + 1)
+// The lanes' values of one word are adjacent, and read four at a time. Words lie LANES + 4 reals apart, so
+// that such reads of adjacent words use different banks.
+#define ROW (LANES + 4)
 #define ROOT_STRIDE (K | 1)
 
 DEVICE real no_end(uint word) { return word < (uint)DIRECTIONS ? REAL_INFINITY : -REAL_INFINITY; }
@@ -46,9 +46,17 @@ DEVICE void keep_slabs(const real* slabs, uint lane, int added, LOCAL real* boun
 // for the parent tile. Negative zero becomes positive as in leaves, so that equal slabs have equal bits.
 DEVICE void make_root(LOCAL const real* bounds, LOCAL real* kept, GLOBAL real* root) {
     for (uint word = LANE_ID; word < (uint)K; word += (uint)LANE_STEP) {
-        LOCAL const real* row = bounds + word * ROW;
-        real least = REAL_INFINITY;
-        UNROLL for (uint lane = 0; lane < (uint)LANES; ++lane) least = MINIMUM(row[lane], least);
+        LOCAL const RealRow* row = (LOCAL const RealRow*)(bounds + word * ROW);
+        RealRow four = row[0];
+        UNROLL for (uint i = 1; i < (uint)LANES / 4u; ++i) {
+            four.x = MINIMUM(row[i].x, four.x);
+            four.y = MINIMUM(row[i].y, four.y);
+            four.z = MINIMUM(row[i].z, four.z);
+            four.w = MINIMUM(row[i].w, four.w);
+        }
+        const real first = MINIMUM(four.x, four.y);
+        const real last = MINIMUM(four.z, four.w);
+        const real least = MINIMUM(first, last);
         const real all = (word < (uint)DIRECTIONS ? least : -least) + (real)0;
         kept[word] = all;
         root[word] = all;
@@ -97,34 +105,23 @@ DEVICE void keep_vertices(const Shapes* shapes, const Tile* tile, LOCAL const re
     }
 }
 
-// The same from the active tetrahedra, one bit each.
-DEVICE void keep_tetrahedra(const Shapes* shapes, const Tile* tile, LOCAL const real* points, uint active,
-                            int added, LOCAL real* bounds) {
-    const Point drift = drift_at(shapes->poses, tile->body);
-    FOR_LANES {
-        real slabs[K];
-        begin_slabs(slabs);
-        if ((active >> lane & 1u) != 0u) bound_corners(shapes, tile, points, lane, drift, slabs);
-        keep_slabs(slabs, lane, added, bounds);
-    }
+// Slabs of a tetrahedron, of which `active` has a bit; of one that is not active they contain nothing.
+DEVICE void active_slabs(const Shapes* shapes, const Tile* tile, LOCAL const real* points, uint active,
+                         uint lane, real* slabs) {
+    bound_corners(shapes, tile, points, lane, drift_at(shapes->poses, tile->body), slabs);
+    const int empty = (active >> lane & 1u) == 0u;
+    UNROLL for (uint word = 0; word < (uint)K; ++word) slabs[word] = empty ? no_end(word) : slabs[word];
 }
 
 // `added`: merges the slabs with those of the frame before.
-DEVICE void write_leaves(const Shapes* shapes, const Tile* tile, LOCAL const real* points, uint active,
-                         int added, GLOBAL real* leaves) {
-    const Point drift = drift_at(shapes->poses, tile->body);
-    FOR_LANES {
-        real slabs[K];
-        bound_corners(shapes, tile, points, lane, drift, slabs);
-        const int empty = (active >> lane & 1u) == 0u;
-        UNROLL for (uint axis = 0; axis < (uint)LEAF_DIRECTIONS; ++axis) {
-            const real lower = empty ? REAL_INFINITY : slabs[axis] + (real)0;
-            const real upper = empty ? -REAL_INFINITY : slabs[DIRECTIONS + axis] + (real)0;
-            GLOBAL real* low = leaves + axis * LANES + lane;
-            GLOBAL real* high = leaves + (LEAF_DIRECTIONS + axis) * LANES + lane;
-            *low = added ? MINIMUM(lower, *low) : lower;
-            *high = added ? MAXIMUM(upper, *high) : upper;
-        }
+DEVICE void write_leaf(const real* slabs, uint lane, int added, GLOBAL real* leaves) {
+    UNROLL for (uint axis = 0; axis < (uint)LEAF_DIRECTIONS; ++axis) {
+        const real lower = slabs[axis] + (real)0;
+        const real upper = slabs[DIRECTIONS + axis] + (real)0;
+        GLOBAL real* low = leaves + axis * LANES + lane;
+        GLOBAL real* high = leaves + (LEAF_DIRECTIONS + axis) * LANES + lane;
+        *low = added ? MINIMUM(lower, *low) : lower;
+        *high = added ? MAXIMUM(upper, *high) : upper;
     }
 }
 
@@ -138,10 +135,10 @@ KERNEL void refit_leaf_tiles(GLOBAL real* leaves, GLOBAL real* uppers, uint firs
                              GLOBAL const uint* bodies, GLOBAL const real* poses, GLOBAL const real* vertices,
                              GLOBAL const real* next_poses, GLOBAL const real* next_vertices, uint stored) {
     LOCAL_ARRAY(real, all_points, LANE_TEAMS * MOST_VERTICES * POINT_REALS);
-    LOCAL_ARRAY(real, all_bounds, LANE_TEAMS * K * ROW);
+    LOCAL_ARRAY(RealRow, all_bounds, LANE_TEAMS * K * ROW / 4);
     LOCAL_ARRAY(real, kept, LANES * ROOT_STRIDE);
     LOCAL real* points = all_points + LANE_TEAM * (MOST_VERTICES * POINT_REALS);
-    LOCAL real* bounds = all_bounds + LANE_TEAM * (K * ROW);
+    LOCAL real* bounds = (LOCAL real*)all_bounds + LANE_TEAM * (K * ROW);
     GLOBAL const uint* unit = units + (ulong)GROUP_ID * UNIT_WORDS;
     const uint count = unit[UNIT_COUNT];
     uint i = LANE_TEAM;
@@ -164,13 +161,18 @@ KERNEL void refit_leaf_tiles(GLOBAL real* leaves, GLOBAL real* uppers, uint firs
                                    added ? next_vertices : vertices};
             load_vertices(&shapes, &tile, points);
             LANE_BARRIER;
-            if (active == 0xffffffffu >> (LANES - tile.count))
+            const int stores = stored != 0u || unit[UNIT_PARENT] == NO_TILE;
+            if (!stores && active == 0xffffffffu >> (LANES - tile.count)) {
                 keep_vertices(&shapes, &tile, points, added, bounds);
-            else
-                keep_tetrahedra(&shapes, &tile, points, active, added, bounds);
-            if (has_tile && (stored != 0u || unit[UNIT_PARENT] == NO_TILE))
-                write_leaves(&shapes, &tile, points, active, added,
-                             leaves + (ulong)number * (LEAF_WORDS * LANES));
+            } else {
+                GLOBAL real* own = leaves + (ulong)number * (LEAF_WORDS * LANES);
+                FOR_LANES {
+                    real slabs[K];
+                    active_slabs(&shapes, &tile, points, active, lane, slabs);
+                    if (stores && has_tile) write_leaf(slabs, lane, added, own);
+                    keep_slabs(slabs, lane, added, bounds);
+                }
+            }
             LANE_BARRIER;
             ++frame;
         } while (frame < FRAMES);
@@ -221,9 +223,12 @@ KERNEL void bound_touched_tiles(GLOBAL real* leaves, GLOBAL uint* marks, uint ti
                                        added ? next_vertices : vertices};
                 load_vertices(&shapes, &tile, points);
                 LANE_BARRIER;
-                if (has_tile)
-                    write_leaves(&shapes, &tile, points, taking_part[number], added,
-                                 leaves + (ulong)number * (LEAF_WORDS * LANES));
+                GLOBAL real* own = leaves + (ulong)number * (LEAF_WORDS * LANES);
+                FOR_LANES {
+                    real slabs[K];
+                    active_slabs(&shapes, &tile, points, taking_part[number], lane, slabs);
+                    if (has_tile) write_leaf(slabs, lane, added, own);
+                }
                 LANE_BARRIER;
                 ++frame;
             } while (frame < FRAMES);
@@ -235,9 +240,9 @@ KERNEL void bound_touched_tiles(GLOBAL real* leaves, GLOBAL uint* marks, uint ti
 // A higher level, whose boxes are the roots of the tiles below.
 KERNEL void refit_upper_tiles(GLOBAL real* uppers, uint first_upper, GLOBAL real* roots, GLOBAL real* volumes,
                               GLOBAL const uint* units, GLOBAL const uint* tiles) {
-    LOCAL_ARRAY(real, all_bounds, LANE_TEAMS * K * ROW);
+    LOCAL_ARRAY(RealRow, all_bounds, LANE_TEAMS * K * ROW / 4);
     LOCAL_ARRAY(real, kept, LANES * ROOT_STRIDE);
-    LOCAL real* bounds = all_bounds + LANE_TEAM * (K * ROW);
+    LOCAL real* bounds = (LOCAL real*)all_bounds + LANE_TEAM * (K * ROW);
     GLOBAL const uint* unit = units + (ulong)GROUP_ID * UNIT_WORDS;
     const uint count = unit[UNIT_COUNT];
     uint i = LANE_TEAM;
