@@ -47,8 +47,12 @@ Settings with_decision(Settings settings, const DeviceInfo& info) {
     return settings;
 }
 
-/// Throws InputError if other settings do not fit motion=linear.
-void check_motion_settings(const Settings& settings) {
+/// Throws InputError if other settings do not fit margin or motion=linear.
+void check_bounds_settings(const Settings& settings) {
+    if (settings[parameters::margin] > 0 && is_published(settings))
+        throw InputError(
+            "setting margin does not go with residency=published, whose code has no such bounds; "
+            "leave residency and preset out");
     if (settings[parameters::motion] != Motion::linear) return;
     if (is_published(settings))
         throw InputError("setting motion=linear does not go with residency=published, whose code bounds one "
@@ -297,7 +301,7 @@ Settings Traversal::fitted(const Settings& asked, const DeviceInfo& info, const 
                 "setting order=canonical does not go with residency=published, which sorts on the "
                 "host; leave it out");
     }
-    check_motion_settings(settings);
+    check_bounds_settings(settings);
     if (const auto origin = geometry_of(settings).origin;
         origin == Origin::world || is_at_world_origin(scene, origin))
         fitting.set(tandem::parameters::origin(Origin::world));

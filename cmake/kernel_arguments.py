@@ -6,8 +6,8 @@ import re
 
 KERNEL = re.compile(r"^KERNEL void (\w+)\(([^)]*)\)", re.M)
 BUFFER = re.compile(r"GLOBAL (?:const )?\w+\* (\w+)")
-SCALAR = re.compile(r"(uint|ulong|double) (\w+)")
-TYPES = {"uint": "std::uint32_t", "ulong": "std::uint64_t", "double": "double"}
+TYPES = {"uint": "std::uint32_t", "ulong": "std::uint64_t", "float": "float", "double": "double"}
+SCALAR = re.compile(rf"({'|'.join(TYPES)}) (\w+)")
 
 
 def member(parameter):

@@ -86,7 +86,7 @@ class KernelFiles(unittest.TestCase):
             (VARIANTS + KERNEL.replace("K;", "K; AXES;"), "differ in whether they name AXES"),
             (VARIANTS + KERNEL.replace("K;", "K; FOR_LANES {}"), "differ in whether they have lanes"),
             (VARIANTS + "// Host constants: N\n" + KERNEL, "one.cl: the text has no default of N"),
-            (VARIANTS + KERNEL.replace("ulong", "float"), "kernel add_words: parameter 'float first' is"),
+            (VARIANTS + KERNEL.replace("ulong", "short"), "kernel add_words: parameter 'short first' is"),
             (VARIANTS + KERNEL.replace("GLOBAL real*", "real*"), "kernel add_words: parameter 'real* to' is"),
         ):
             errors = self.embed(text)[0]

@@ -4,7 +4,9 @@
 #include "base/error.h"
 
 #include <algorithm>
+#include <cmath>
 #include <initializer_list>
+#include <limits>
 
 namespace tandem {
 
@@ -18,9 +20,9 @@ constexpr Direction coordinates[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 constexpr Direction corners[] = {{1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {1, -1, -1}};
 constexpr Direction edges[] = {{1, 1, 0}, {1, -1, 0}, {1, 0, 1}, {1, 0, -1}, {0, 1, 1}, {0, 1, -1}};
 
-constexpr std::array<const Parameter*, 7> declared{
+constexpr std::array<const Parameter*, 8> declared{
     &parameters::k,         &parameters::axes,   &parameters::precision, &parameters::rounding,
-    &parameters::placement, &parameters::origin, &parameters::motion};
+    &parameters::placement, &parameters::origin, &parameters::motion,    &parameters::margin};
 
 } // namespace
 
@@ -55,6 +57,7 @@ Geometry geometry_of(const Settings& settings) {
     geometry.placement = settings[parameters::placement];
     geometry.origin = settings[parameters::origin];
     geometry.motion = settings[parameters::motion];
+    geometry.margin = settings[parameters::margin];
     if (geometry.coordinate_axes && geometry.k != 8)
         throw InputError("setting axes=coordinate goes with k=8 only; leave axes out for other k");
     if (geometry.placement == Placement::exact && geometry.rounding != Rounding::safe
@@ -67,7 +70,18 @@ Geometry geometry_of(const Settings& settings) {
     if (geometry.motion == Motion::linear && geometry.rounding == Rounding::published)
         throw InputError("setting motion=linear does not go with rounding=published, which has no bound for "
                          "positions between frames; choose rounding=safe");
+    if (geometry.margin > 0 && geometry.rounding == Rounding::published)
+        throw InputError("setting margin does not go with rounding=published, whose bounds promise no "
+                         "distance; choose rounding=safe");
     return geometry;
+}
+
+float reach_of_margin(const Geometry& geometry) {
+    if (!(geometry.margin > 0)) return 0;
+    const double reach = geometry.margin / 2 * (1 + 0x1p-20);
+    auto rounded = static_cast<float>(reach);
+    if (double{rounded} < reach) rounded = std::nextafter(rounded, std::numeric_limits<float>::infinity());
+    return std::max(rounded, std::numeric_limits<float>::min()); // a device may round smaller ones to 0
 }
 
 Defines row_defines(const Geometry& geometry, std::uint32_t group_size) {
@@ -84,6 +98,7 @@ Defines geometry_defines(const Geometry& geometry, std::uint32_t group_size) {
     define(defines, parameters::k, geometry.k);
     define(defines, parameters::axes, geometry.coordinate_axes ? Axes::coordinate : Axes::standard);
     define(defines, parameters::rounding, geometry.rounding);
+    if (geometry.margin > 0) defines["MARGIN"] = "1";
     return defines;
 }
 

@@ -18,6 +18,7 @@ struct Geometry {
     Placement placement = Placement::rounded; ///< exact only with safe or directed rounding
     Origin origin = Origin::world;            ///< of coordinates on devices
     Motion motion = Motion::none;             ///< linear not with published rounding
+    double margin = 0;                        ///< 0 with published rounding
 
     /// Whether all members are equal.
     bool operator==(const Geometry&) const = default;
@@ -26,12 +27,12 @@ struct Geometry {
 /// The k / 2 integer directions of a geometry, with components in {-1, 0, 1}, in the order of kernels.
 std::vector<std::array<int, 3>> directions(const Geometry& geometry);
 
-/// The settings that algorithms with k-DOPs declare: k, axes, precision, rounding, placement, origin and
-/// motion.
+/// The settings that algorithms with k-DOPs declare: k, axes, precision, rounding, placement, origin, motion
+/// and margin.
 std::span<const Parameter* const> geometry_parameters();
 
 /// The geometry of these settings; with placement=exact and precision=double, origin is world. Throws
-/// InputError if axes does not fit k, placement does not fit rounding, or motion does not fit rounding.
+/// InputError if axes does not fit k, or placement, motion or margin does not fit rounding.
 Geometry geometry_of(const Settings& settings);
 
 /// Defines for kernels that read rows only (rows.clh): precision, placement, motion and group size.
@@ -44,6 +45,10 @@ Defines geometry_defines(const Geometry& geometry, std::uint32_t group_size);
 inline std::size_t pose_reals(const Geometry& geometry) {
     return geometry.placement == Placement::exact || geometry.motion == Motion::linear ? 16 : 12;
 }
+
+/// The length by which kernels enlarge bounds in all directions: half the margin, rounded up, with a spare
+/// factor for the roundings that follow (README.md, corollary 9). 0 without a margin.
+float reach_of_margin(const Geometry& geometry);
 
 /// Bytes of one real number.
 inline std::size_t real_bytes(const Geometry& geometry) {

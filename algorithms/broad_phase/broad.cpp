@@ -33,6 +33,7 @@ BroadSweep::BroadSweep(const Scene& scene, const Geometry& geometry, Broad bound
       bound_(bound),
       roundoff_(std::ldexp(1.0, geometry.precision == Precision::fp64 ? -53 : -24)),
       underflow_(underflow(geometry.precision)),
+      margin_(double{reach_of_margin(geometry)} * (1 + 0x1p-16)),
       tolerance_(geometry.rounding == Rounding::published ? published_slack : 0) {
     if (bound == Broad::sphere_boxes)
         directions_ = {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()};
@@ -125,7 +126,7 @@ void BroadSweep::bound_in(const Frame& frame, std::uint32_t body, double skin, d
         bound_deformed(frame.deformed[body], slabs);
     else
         bound_rigid(shapes_[scene_.bodies[body].mesh], frame.poses[body], slabs);
-    if (skin > 0) widen(slabs, skin);
+    if (skin + margin_ > 0) widen(slabs, skin + margin_);
 }
 
 /// Extends the bounds of a body in a frame by those in its successor and by the path between them.
@@ -185,8 +186,9 @@ std::vector<BodyPair> BroadSweep::pairs(std::span<const Ball> balls) const {
     std::vector<double> slabs;
     for (const auto& ball : balls)
         for (const auto& d : directions_) {
-            slabs.push_back(d.dot(ball.centre) - ball.radius * d.norm());
-            slabs.push_back(d.dot(ball.centre) + ball.radius * d.norm());
+            const double width = (ball.radius + margin_) * d.norm();
+            slabs.push_back(d.dot(ball.centre) - width);
+            slabs.push_back(d.dot(ball.centre) + width);
         }
     return swept(slabs);
 }

@@ -58,6 +58,7 @@ private:
     std::vector<BodyPair> own_; ///< the pairs (a, a)
     double roundoff_;
     double underflow_;          ///< error bound of a coordinate below the least normal number
+    double margin_;             ///< by which kernels enlarge bounds, with their roundings
     double tolerance_;          ///< widening along unit directions for published rounding
     std::vector<Shape> shapes_; ///< by mesh
 };

@@ -175,6 +175,7 @@ void ChunkTrees::launch_strips(bool all) {
                                                     .vertices = bodies_.vertices(),
                                                     .next_poses = bodies_.next_poses(),
                                                     .next_vertices = bodies_.next_vertices(),
+                                                    .margin = reach_of_margin(bodies_.geometry()),
                                                     .jobs = job_table_,
                                                     .first_job = s.first_job,
                                                     .job_count = jobs,

@@ -225,7 +225,7 @@ DEVICE void write_strip(const Refit* refit, LOCAL const uint* strip, LOCAL const
 // at most MOST_STRIPS. `first_depth`: the depth at which the loop starts.
 KERNEL void refit_strips(GLOBAL real* nodes, GLOBAL const uint* trees, GLOBAL const uint* levels,
                          GLOBAL const real* poses, GLOBAL const uint* tetrahedra, GLOBAL const real* vertices,
-                         GLOBAL const real* next_poses, GLOBAL const real* next_vertices,
+                         GLOBAL const real* next_poses, GLOBAL const real* next_vertices, float margin,
                          GLOBAL const uint* jobs, uint first_job, uint job_count, uint level, uint height,
                          uint first_depth) {
     LOCAL_ARRAY(Unit, tiles, TEAM_COUNT * TEAM_TILE);
@@ -233,7 +233,7 @@ KERNEL void refit_strips(GLOBAL real* nodes, GLOBAL const uint* trees, GLOBAL co
     const Refit refit = {nodes,
                          trees,
                          levels,
-                         {tetrahedra, poses, vertices, next_poses, next_vertices},
+                         {tetrahedra, poses, vertices, next_poses, next_vertices, margin},
                          jobs + (ulong)first_job * JOB_WORDS,
                          level,
                          height};

@@ -3,7 +3,7 @@
 // from the roots of the level below. Each vertex of a tile is transformed once, into local memory, not once
 // per tetrahedron that shares it.
 // Host variants: AXES K PRECISION SLABS=0|1, in lanes; of higher levels: PRECISION=32 SLABS=1
-// Host constants: MOTION PLACEMENT ROUNDING
+// Host constants: MARGIN MOTION PLACEMENT ROUNDING
 #include "backends/portable.h"
 #include "algorithms/hierarchy/tiles.clh"
 
@@ -100,7 +100,7 @@ DEVICE void keep_vertices(const Shapes* shapes, const Tile* tile, LOCAL const re
         real slabs[K];
         begin_slabs(slabs);
         for (uint i = lane; i < count; i += (uint)LANES)
-            widen_by_point(point_at(points, i), drift, swing_at(shapes, tile, i), slabs, slabs + DIRECTIONS);
+            widen_by_point(point_at(points, i), drift, reach_at(shapes, tile, i), slabs, slabs + DIRECTIONS);
         keep_slabs(slabs, lane, added, bounds);
     }
 }
@@ -133,7 +133,8 @@ KERNEL void refit_leaf_tiles(GLOBAL real* leaves, GLOBAL real* uppers, uint firs
                              GLOBAL const uint* taking_part, GLOBAL const uint* starts,
                              GLOBAL const uint* vertex_numbers, GLOBAL const uint* corners,
                              GLOBAL const uint* bodies, GLOBAL const real* poses, GLOBAL const real* vertices,
-                             GLOBAL const real* next_poses, GLOBAL const real* next_vertices, uint stored) {
+                             GLOBAL const real* next_poses, GLOBAL const real* next_vertices, float margin,
+                             uint stored) {
     LOCAL_ARRAY(real, all_points, LANE_TEAMS * MOST_VERTICES * POINT_REALS);
     LOCAL_ARRAY(RealRow, all_bounds, LANE_TEAMS * K * ROW / 4);
     LOCAL_ARRAY(real, kept, LANES * ROOT_STRIDE);
@@ -158,7 +159,8 @@ KERNEL void refit_leaf_tiles(GLOBAL real* leaves, GLOBAL real* uppers, uint firs
                                    corners,
                                    bodies,
                                    added ? next_poses : poses,
-                                   added ? next_vertices : vertices};
+                                   added ? next_vertices : vertices,
+                                   margin};
             load_vertices(&shapes, &tile, points);
             LANE_BARRIER;
             const int stores = stored != 0u || unit[UNIT_PARENT] == NO_TILE;
@@ -190,7 +192,8 @@ KERNEL void bound_touched_tiles(GLOBAL real* leaves, GLOBAL uint* marks, uint ti
                                 GLOBAL const uint* starts, GLOBAL const uint* vertex_numbers,
                                 GLOBAL const uint* corners, GLOBAL const uint* bodies,
                                 GLOBAL const real* poses, GLOBAL const real* vertices,
-                                GLOBAL const real* next_poses, GLOBAL const real* next_vertices) {
+                                GLOBAL const real* next_poses, GLOBAL const real* next_vertices,
+                                float margin) {
     LOCAL_ARRAY(real, all_points, LANE_TEAMS * MOST_VERTICES * POINT_REALS);
     LOCAL real* points = all_points + LANE_TEAM * (MOST_VERTICES * POINT_REALS);
     const uint step = GROUP_COUNT * LANE_TEAMS * TILES_A_TURN;
@@ -220,7 +223,8 @@ KERNEL void bound_touched_tiles(GLOBAL real* leaves, GLOBAL uint* marks, uint ti
                                        corners,
                                        bodies,
                                        added ? next_poses : poses,
-                                       added ? next_vertices : vertices};
+                                       added ? next_vertices : vertices,
+                                       margin};
                 load_vertices(&shapes, &tile, points);
                 LANE_BARRIER;
                 GLOBAL real* own = leaves + (ulong)number * (LEAF_WORDS * LANES);

@@ -282,6 +282,8 @@ void TileTrees::do_refit(const Frame& frame, bool all) {
                                                                  .vertices = bodies_.vertices(),
                                                                  .next_poses = bodies_.next_poses(),
                                                                  .next_vertices = bodies_.next_vertices(),
+                                                                 .margin =
+                                                                     reach_of_margin(bodies_.geometry()),
                                                                  .stored = std::uint32_t{stores ? 1u : 0u}};
             device_.launch(leaf_kernel_, grid, arguments);
         } else {
@@ -312,7 +314,8 @@ void TileTrees::bound_touched() const {
                                                             .poses = bodies_.poses(),
                                                             .vertices = bodies_.vertices(),
                                                             .next_poses = bodies_.next_poses(),
-                                                            .next_vertices = bodies_.next_vertices()};
+                                                            .next_vertices = bodies_.next_vertices(),
+                                                            .margin = reach_of_margin(bodies_.geometry())};
     device_.launch(touched_kernel_, {(first_upper() + tiles - 1) / tiles, group_size_}, arguments);
 }
 

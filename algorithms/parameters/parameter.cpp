@@ -38,12 +38,25 @@ const Parameter& named(std::span<const Parameter* const> parameters, const std::
 } // namespace
 
 std::string Parameter::text(std::int64_t value) const {
+    if (is_length()) return fmt::format("{}", std::bit_cast<double>(value));
     for (const auto& word : choices())
         if (word.value == value) return std::string(word.text);
     return std::to_string(value);
 }
 
+/// A NaN fails the comparisons.
+std::int64_t Parameter::parse_length(const std::string& text) const {
+    double length = 0;
+    const auto* end = text.data() + text.size();
+    const auto result = std::from_chars(text.data(), end, length);
+    if (result.ec == std::errc{} && result.ptr == end && length >= 0 && length <= longest)
+        return number_of(length + 0.0); // -0 becomes 0
+    throw InputError(fmt::format("setting {}={} is impossible; give a length from 0 to {}, such as 0.01",
+                                 name, text, longest));
+}
+
 std::int64_t Parameter::parse(const std::string& text) const {
+    if (is_length()) return parse_length(text);
     std::vector<std::string_view> allowed;
     for (const auto& word : choices()) {
         if (word.text == text) return word.value;

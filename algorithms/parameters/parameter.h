@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <initializer_list>
 #include <map>
@@ -28,15 +29,18 @@ struct Parameter {
     std::int64_t initial = 0;                         ///< default value
     std::int64_t least = 0,                           ///< lowest value of an integer
         most = 0;                                     ///< highest value of an integer
+    double longest = 0;                               ///< highest value of a length, which is at least 0
     std::array<Word, 12> words{};                     ///< the first word_count are in use
-    std::size_t word_count = 0;                       ///< 0: integers only
+    std::size_t word_count = 0;                       ///< 0: integers or lengths only
     std::array<std::int64_t, 4> alternative_values{}; ///< the first alternative_count are in use
     std::size_t alternative_count = 0;                ///< at most 4
 
     /// The words that are values; empty if only integers are.
     constexpr std::span<const Word> choices() const { return std::span(words).first(word_count); }
+    /// Whether lengths from 0 to `longest` are values; a value in code is then the bits of a double.
+    constexpr bool is_length() const { return longest > 0; }
     /// Whether integers from least to most are values.
-    constexpr bool takes_integers() const { return least != most || word_count == 0; }
+    constexpr bool takes_integers() const { return !is_length() && (least != most || word_count == 0); }
     /// Values that `--algorithm auto` tries for speed when the setting is not given.
     /// Combinations that change the answer are left out. Empty: only the user sets it.
     constexpr std::span<const std::int64_t> alternatives() const {
@@ -44,9 +48,12 @@ struct Parameter {
     }
     /// The value in the form that --set accepts.
     std::string text(std::int64_t value) const;
-    /// Accepts a word, or an integer such as 10000000 or 1e7. Throws InputError that lists the allowed
-    /// values.
+    /// Accepts a word, an integer such as 10000000 or 1e7, or a length such as 0.01. Throws InputError that
+    /// lists the allowed values.
     std::int64_t parse(const std::string& text) const;
+
+private:
+    std::int64_t parse_length(const std::string& text) const;
 };
 
 /// A setting with a value, as listed in presets.
@@ -61,8 +68,17 @@ struct ValueRange {
         most = 0;           ///< included
 };
 
-/// A parameter with values of type T: an enumeration, an integer or bool. Rows are constants. A default that
-/// is not a choice, or a duplicate word or value, is a compile error.
+/// The number that stands for a value in a Parameter.
+template<class T>
+constexpr std::int64_t number_of(T value) {
+    if constexpr (std::is_same_v<T, double>)
+        return std::bit_cast<std::int64_t>(value);
+    else
+        return static_cast<std::int64_t>(value);
+}
+
+/// A parameter with values of type T: an enumeration, an integer, bool, or double for a length. Rows are
+/// constants. A default that is not a choice, or a duplicate word or value, is a compile error.
 template<class T>
 struct Setting : Parameter {
     /// Words with their values, in the order of listings; at most 12.
@@ -92,6 +108,13 @@ struct Setting : Parameter {
         if (initial < least || initial > most) throw "a setting's default is out of its range";
     }
 
+    /// A length from 0, its default, to `longest`. Name and help must not be empty.
+    consteval Setting(std::string_view name_, double longest_, std::string_view define_,
+                      std::string_view help_) requires std::is_same_v<T, double> {
+        set(name_, 0, define_, help_);
+        longest = longest_;
+    }
+
     /// The same row of an integer setting with a word for a value out of its range.
     consteval Setting with_word(std::string_view word, T value) const {
         auto row = *this;
@@ -115,7 +138,7 @@ struct Setting : Parameter {
     }
 
     /// The setting with this value, which is not checked. The setting must outlive the result.
-    Assignment operator()(T value) const { return {this, static_cast<std::int64_t>(value)}; }
+    Assignment operator()(T value) const { return {this, number_of(value)}; }
 
 private:
     consteval void set(std::string_view name_, T initial_, std::string_view define_, std::string_view help_) {
@@ -123,7 +146,7 @@ private:
         name = name_;
         define = define_;
         help = help_;
-        initial = static_cast<std::int64_t>(initial_);
+        initial = number_of(initial_);
     }
 };
 
@@ -140,7 +163,11 @@ public:
     /// The value of a setting. Throws std::out_of_range if the algorithm does not have the setting.
     template<class T>
     T operator[](const Setting<T>& setting) const {
-        return static_cast<T>(values_.at(setting.name).value);
+        const auto number = values_.at(setting.name).value;
+        if constexpr (std::is_same_v<T, double>)
+            return std::bit_cast<double>(number);
+        else
+            return static_cast<T>(number);
     }
     /// Whether the algorithm has the setting.
     bool has(const Parameter& parameter) const { return values_.contains(parameter.name); }

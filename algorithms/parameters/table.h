@@ -63,6 +63,10 @@ inline constexpr Setting<Motion> motion{
     "MOTION",
     "positions that bounds contain: none: those of the frame; linear: all between the frame and its "
     "successor, so that no pair that meets on the way is missed; contacts are those of the frame"};
+inline constexpr Setting<double> margin{
+    "margin", 1e30, "",
+    "distance within which no pair of tetrahedra is missed, in the scene's unit of length (rounding=safe and "
+    "directed): bounds grow by half of it in all directions"};
 inline constexpr Setting<Origin> origin{
     "origin",
     Origin::automatic,

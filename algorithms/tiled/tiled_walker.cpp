@@ -40,6 +40,7 @@ void TiledWalker::launch_leaves(const WalkTask& task) {
                                                   .bodies = bodies.row_table(),
                                                   .poses = bodies.poses(),
                                                   .vertices = bodies.vertices(),
+                                                  .margin = reach_of_margin(bodies.geometry()),
                                                   .ids = bodies.ids(),
                                                   .incident_starts = incidence.starts(),
                                                   .incident_partners = incidence.partners(),

@@ -32,6 +32,7 @@ std::vector<std::string> alternatives_of(const Parameter& parameter) {
 /// "1..1024", the list of choices, or both.
 std::string values_of(const Parameter& parameter) {
     auto values = words_of(parameter);
+    if (parameter.is_length()) return fmt::format("0..{}", parameter.longest);
     if (parameter.takes_integers())
         values.insert(values.begin(), fmt::format("{}..{}", parameter.least, parameter.most));
     return fmt::format("{}", fmt::join(values, ", "));
@@ -81,6 +82,7 @@ Json parameters_json(std::span<const Parameter* const> parameters) {
     for (const auto* p : parameters) {
         Json row{{"name", p->name}, {"default", p->text(p->initial)}, {"help", p->help}};
         if (p->takes_integers()) row["range"] = {p->least, p->most};
+        if (p->is_length()) row["range"] = Json::array({0, p->longest});
         if (!p->choices().empty()) row["choices"] = words_of(*p);
         row["alternatives"] = alternatives_of(*p);
         json.push_back(row);
@@ -155,7 +157,7 @@ void explain_setting(const Traversal& traversal, const Parameter& parameter, con
     };
     put("    {} = {}\n", parameter.name, value);
     put_lines(fmt::format("{:{}}{}", "", indent, parameter.help), indent);
-    line(parameter.takes_integers() ? "range" : "choices", values_of(parameter));
+    line(parameter.takes_integers() || parameter.is_length() ? "range" : "choices", values_of(parameter));
     if (const auto values = by_preset(traversal, parameter); !values.empty()) line("presets", values);
     if (!parameter.alternatives().empty())
         line("auto tries", fmt::format("{}", fmt::join(alternatives_of(parameter), ", ")));

@@ -83,11 +83,11 @@ Real length_of(std::size_t count) {
 }
 
 /// Lower and upper bound of a point's projection for a rounding (algorithms/bounds/README.md). `drift` bounds
-/// the point's error along each axis; null for Placement::rounded. `swing` bounds its distance from the
-/// straight path.
+/// the point's error along each axis; null for Placement::rounded. `reach`: the
+/// radius of the ball of points around it.
 template<class Real>
 std::pair<Real, Real> project(const std::array<Real, 3>& point, const std::array<int, 3>& direction,
-                              Rounding rounding, const std::array<Real, 3>* drift, Real swing) {
+                              Rounding rounding, const std::array<Real, 3>* drift, Real reach) {
     std::array<Real, 3> terms{};
     std::size_t count = 0;
     Real off = 0;
@@ -96,7 +96,7 @@ std::pair<Real, Real> project(const std::array<Real, 3>& point, const std::array
         terms[count++] = direction[i] > 0 ? point[i] : -point[i];
         if (drift != nullptr) off += (*drift)[i];
     }
-    off += swing * length_of<Real>(count);
+    off += reach * length_of<Real>(count);
     // The paper's release divides by the direction's length, sqrt(2) or sqrt(3), with these constants.
     if (rounding == Rounding::published && count > 1)
         for (auto& term : terms)
@@ -151,7 +151,8 @@ std::vector<Real> swings_of(const Scene& scene, const FrameInput& input, Origin 
 }
 
 /// Slabs of all tetrahedra of one body, each computed separately from its own vertices. `swings`: of the
-/// vertices on the path to the next frame; empty: 0.
+/// vertices on the path to the next frame; empty: 0. With a margin, each vertex stands for a ball, whose
+/// radius is an input here, as drift is.
 template<class Real>
 Bounds<Real> bounds_of(const Scene& scene, const Frame& frame, const Geometry& geometry, std::size_t body,
                        std::span<const Real> swings) {
@@ -161,6 +162,7 @@ Bounds<Real> bounds_of(const Scene& scene, const Frame& frame, const Geometry& g
     bounds.published = geometry.rounding == Rounding::published;
     const bool drifts = geometry.placement == Placement::exact;
     const auto drift = drifts ? drift_in<Real>(scene, frame, geometry, body) : std::array<Real, 3>{};
+    const auto margin = static_cast<Real>(reach_of_margin(geometry));
     bounds.vertices = world_vertices<Real>(scene, frame, body, geometry.origin);
     const auto& tetrahedra = scene.meshes[scene.bodies[body].mesh].tetrahedra;
     bounds.slabs.resize(tetrahedra.size() * 2 * axes.size());
@@ -176,7 +178,7 @@ Bounds<Real> bounds_of(const Scene& scene, const Frame& frame, const Geometry& g
                 if (skipped[t]) break; // an empty slab overlaps nothing
                 const auto [low, high] =
                     project(bounds.vertices[vertex], axes[axis], geometry.rounding, drifts ? &drift : nullptr,
-                            swings.empty() ? Real(0) : swings[vertex]);
+                            swings.empty() ? margin : swings[vertex] + margin);
                 lower = std::min(lower, low);
                 upper = std::max(upper, high);
             }

@@ -113,4 +113,6 @@ def text_of(value, name):
         return "yes" if value else "no"
     if isinstance(value, (str, int, numpy.integer)):
         return str(value)
-    raise TypeError(f"setting {name}: type {type(value).__name__}; expected a word or an integer")
+    if isinstance(value, (float, numpy.floating)):
+        return repr(float(value))
+    raise TypeError(f"setting {name}: type {type(value).__name__}; expected a word or a number")

@@ -68,8 +68,8 @@ KERNEL void refit_trees(GLOBAL real* nodes, GLOBAL real* volumes, GLOBAL const u
                         GLOBAL const uint* children, GLOBAL const uint* depths, GLOBAL const uint* skipped,
                         GLOBAL const uint* chosen, GLOBAL const uint* bodies, GLOBAL const real* poses,
                         GLOBAL const uint* tetrahedra, GLOBAL const real* vertices,
-                        GLOBAL const real* next_poses, GLOBAL const real* next_vertices) {
-    const Solids solids = {tetrahedra, poses, vertices, next_poses, next_vertices};
+                        GLOBAL const real* next_poses, GLOBAL const real* next_vertices, float margin) {
+    const Solids solids = {tetrahedra, poses, vertices, next_poses, next_vertices, margin};
     const uint body = chosen[GROUP_ID];
     GLOBAL const uint* tree = tree_of(trees, body);
     GLOBAL real* own = nodes + (ulong)tree[TREE_NODES] * K;

@@ -192,7 +192,8 @@ void StoredTrees::do_refit(const Frame& frame, bool all) {
                                               .tetrahedra = bodies_.tetrahedra(),
                                               .vertices = bodies_.vertices(),
                                               .next_poses = bodies_.next_poses(),
-                                              .next_vertices = bodies_.next_vertices()};
+                                              .next_vertices = bodies_.next_vertices(),
+                                              .margin = reach_of_margin(bodies_.geometry())};
     device_.launch(kernel_, {bodies, group_size_}, arguments);
     needs_full_refit_ = false;
 }

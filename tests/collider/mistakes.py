@@ -53,7 +53,11 @@ ValueError | unknown preset of tiled 'fairest'                        | make(pre
 ValueError | named twice                                              | make(device="host+host")
 ValueError | device=all                                               | make(device="all")
 ValueError | choose decision=exact or contact_rule=none               | make(motion="linear", decision="recheck")
-TypeError  | setting k: type float; expected a word or an integer     | make(k=8.0)
+TypeError  | setting k: type list; expected a word or a number | make(k=[8])
+ValueError | setting k=8.0 is impossible; choose one of 6, 8, 12, 14, 16, 18, 20, 24, 26 | make(k=8.0)
+ValueError | setting margin=-0.5 is impossible; give a length from 0 to 1e+30, such as 0.01 | make(margin=-0.5)
+ValueError | setting margin=nan is impossible; give a length from 0 to 1e+30, such as 0.01 | make(margin=float("nan"))
+ValueError | setting margin=yes is impossible; give a length from 0 to 1e+30, such as 0.01 | make(margin=True)
 TypeError  | device: type int; expected a name                        | make(device=0)
 TypeError  | a collider owns memory of devices and cannot be pickled  | pickle.dumps(collider)
 """

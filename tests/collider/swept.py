@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # test: cost=4 full=20 needs=TANDEM_BUILDS_PYTHON
-"""tandem.Collider with setting motion=linear: pairs of a frame and its successor."""
+"""tandem.Collider with settings that enlarge bounds: pairs of a frame and its successor, and within a margin."""
 
 import json
 
@@ -50,6 +50,26 @@ class Swept(ColliderCase):
                         (collider.contacts(POSES, next_poses=after).pairs == contacts).all(),
                         "those of the frame",
                     )
+
+    def test_a_margin_is_a_number_or_its_text(self):
+        vertices = numpy.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], float)
+        mesh = (vertices, numpy.array([[0, 1, 2, 3]]))
+        poses = [[0, 0, 0, 1, 0, 0, 0], [1.25, 0, 0, 1, 0, 0, 0]]  # 0.25 apart
+        for device in DEVICES:
+            for margin, count in (
+                (0.25, 1),
+                ("0.25", 1),
+                (numpy.float32(0.25), 1),
+                (1, 1),
+                (0.24, 0),
+                (0, 0),
+            ):
+                with self.subTest(device=device, margin=margin):
+                    collider = tandem.Collider(
+                        [mesh, mesh], device=device, margin=margin, contact_rule="none"
+                    )
+                    self.assertEqual(collider.count(poses), count)
+                    self.assertEqual(float(collider.settings["margin"]), float(margin))
 
     def test_deformable_bodies(self):
         scene = tandem.make_scene("plates")

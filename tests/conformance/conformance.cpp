@@ -17,12 +17,17 @@ using namespace support;
 
 using SettingValues = std::pair<std::string, std::vector<std::string>>;
 
-const std::vector<SettingValues> shared_settings{
-    {"residency", {"resident", "published"}}, {"convert", {"serial", "parallel"}},
-    {"work_items", {"64", "2048"}},           {"broad", {"sphere", "device"}},
-    {"self", {"off", "on", "deformable"}},    {"body_pair_capacity", {"1", "65536"}},
-    {"order", {"any", "canonical"}},          {"motion", {"none", "linear"}},
-    {"pair_capacity", {"1", "100000"}},       {"contact_capacity", {"1", "100000"}}};
+const std::vector<SettingValues> shared_settings{{"residency", {"resident", "published"}},
+                                                 {"convert", {"serial", "parallel"}},
+                                                 {"work_items", {"64", "2048"}},
+                                                 {"broad", {"sphere", "device"}},
+                                                 {"self", {"off", "on", "deformable"}},
+                                                 {"body_pair_capacity", {"1", "65536"}},
+                                                 {"order", {"any", "canonical"}},
+                                                 {"motion", {"none", "linear"}},
+                                                 {"margin", {"0", "0.01"}}, //
+                                                 {"pair_capacity", {"1", "100000"}},
+                                                 {"contact_capacity", {"1", "100000"}}};
 
 const std::vector<SettingValues> settings_of_single_algorithms{
     {"leaves", {"2", "4", "32"}},
@@ -113,7 +118,7 @@ std::vector<Axis> axes_of(const Traversal& traversal) {
 }
 
 /// Replaces the values of a row that need the published data path, which neither the device's broad phase nor
-/// order=canonical nor motion=linear has, and those that bound no motion.
+/// order=canonical nor motion=linear nor a margin has, and those whose bounds grow in no way.
 SettingTexts resident_row(SettingTexts row) {
     const auto set = [&row](const char* name, const char* value) {
         if (row.contains(name)) row[name] = value;
@@ -122,20 +127,21 @@ SettingTexts resident_row(SettingTexts row) {
     set("batch", "0");
     set("upload", "seeds");
     set("sizes", "own");
-    if (row.at("motion") == "none") return row;
+    if (row.at("motion") == "none" && row.at("margin") == "0") return row;
     if (row.at("rounding") == "published") row["rounding"] = "safe";
-    if (row.contains("slabs") && row.at("slabs") == "three") row["slabs"] = "all";
+    if (row.at("motion") == "linear" && row.contains("slabs") && row.at("slabs") == "three")
+        row["slabs"] = "all";
     return row;
 }
 
 /// Splits a row that combines values that exclude each other: one row with the later ones, one with those of
 /// the published data path. Contacts of a frame with a successor need exact decisions.
 std::vector<SettingTexts> possible(const std::vector<SettingTexts>& rows) {
-    const SettingTexts published{{"broad", "sphere"}, {"order", "any"}, {"motion", "none"}};
+    const SettingTexts published{{"broad", "sphere"}, {"order", "any"}, {"margin", "0"}, {"motion", "none"}};
     std::vector<SettingTexts> all;
     for (const auto& row : rows) {
-        const bool is_resident =
-            row.at("broad") == "device" || row.at("order") == "canonical" || row.at("motion") == "linear";
+        const bool is_resident = row.at("broad") == "device" || row.at("order") == "canonical"
+                                 || row.at("motion") == "linear" || row.at("margin") != "0";
         const auto first = is_resident ? resident_row(row) : row;
         all.push_back(first);
         if (row.at("motion") == "linear") all.back()["decision"] = "exact";

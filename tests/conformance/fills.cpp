@@ -47,8 +47,10 @@ const std::vector<Values> every_path{{"output", {"pairs", "contacts", "count", "
                                      {"leaves", {"2", "32"}},
                                      {"most_seeds", {"1", "256"}},
                                      {"seed_threshold", {"1", "1e7"}}};
-const std::vector<Values> resident_path{
-    {"motion", {"none", "linear"}}, {"order", {"any", "canonical"}}, {"broad", {"device", "sphere"}}};
+const std::vector<Values> resident_path{{"motion", {"none", "linear"}},
+                                        {"margin", {"0", "0.01"}},
+                                        {"order", {"any", "canonical"}},
+                                        {"broad", {"device", "sphere"}}};
 
 /// Rows of settings that together have every pair of two values.
 std::vector<SettingTexts> rows_of(const Traversal& traversal, bool published) {

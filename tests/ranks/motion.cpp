@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Setting motion=linear on the ranks of a job: ghosts are the bodies that could meet an own body on the path
-// to the frame's successor.
+// Settings motion=linear and margin on the ranks of a job: ghosts are the bodies that could meet an own body
+// on the path to the frame's successor, or come within the margin.
 #include "base/error.h"
 #include "tests/ranks/support.h"
 #include "tests/support/test.h"
@@ -30,11 +30,6 @@ TEST_F(RankMotion, CombinedAnswersEqualOneDevice) {
     }
 }
 
-/// Arcs about distant origins of meshes are longer than skins.
-TEST_F(RankMotion, CentredMeshesMoveOnArcs) {
-    expect_paths_equal(with_distant_meshes(procession(24, 3, 0.02), {1e4}), {{"origin", "auto"}});
-}
-
 /// Neighbours in frames 0 and 1 are the same; halfway every other body passes the next one.
 Scene leaping_row(std::uint32_t bodies) {
     auto scene = procession(bodies, 3, 0);
@@ -49,6 +44,19 @@ Scene leaping_row(std::uint32_t bodies) {
     scene.bodies.assign(bodies, Body{});
     scene.digest = digest_of(scene);
     return scene;
+}
+
+TEST_F(RankMotion, GhostsAreWithinTheMargin) {
+    for (const std::string margin : {"0.3", "2.5"}) {
+        SCOPED_TRACE(margin);
+        expect_paths_equal(soft_procession(24, 3, 0.35), {{"margin", margin}});
+    }
+    expect_frames_equal(leaping_row(24), algorithm("tiled"), own_device(), {{"margin", "2.5"}});
+}
+
+/// Arcs about distant origins of meshes are longer than skins.
+TEST_F(RankMotion, CentredMeshesMoveOnArcs) {
+    expect_paths_equal(with_distant_meshes(procession(24, 3, 0.02), {1e4}), {{"origin", "auto"}});
 }
 
 /// Bodies that overlap in no frame, only on the path between two.

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace tandem::support {
+
+using FourCorners = std::array<Eigen::Vector3d, 4>;
+
+/// The distance of two segments: of the end points from the other segment, or of the lines where both feet
+/// are inside.
+inline double segment_distance(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                               const Eigen::Vector3d& d) {
+    const auto from_segment = [](const Eigen::Vector3d& p, const Eigen::Vector3d& from,
+                                 const Eigen::Vector3d& to) {
+        const Eigen::Vector3d along = to - from;
+        const double s = std::clamp((p - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
+        return (p - from - s * along).norm();
+    };
+    double least = std::min(
+        {from_segment(a, c, d), from_segment(b, c, d), from_segment(c, a, b), from_segment(d, a, b)});
+    const Eigen::Vector3d u = b - a, v = d - c, w = c - a, n = u.cross(v);
+    const double length = n.squaredNorm();
+    if (length == 0) return least;
+    const double s = w.cross(v).dot(n) / length, t = w.cross(u).dot(n) / length;
+    if (s >= 0 && s <= 1 && t >= 0 && t <= 1) least = std::min(least, std::abs(w.dot(n)) / n.norm());
+    return least;
+}
+
+/// The distance of a point from a triangle's plane, where its foot is inside; infinity elsewhere.
+inline double plane_distance(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                             const Eigen::Vector3d& c) {
+    const Eigen::Vector3d n = (b - a).cross(c - a);
+    const bool inside = n.dot((b - a).cross(p - a)) >= 0 && n.dot((c - b).cross(p - b)) >= 0
+                        && n.dot((a - c).cross(p - c)) >= 0;
+    return inside ? std::abs(n.dot(p - a)) / n.norm() : std::numeric_limits<double>::infinity();
+}
+
+/// The least distance between the surfaces' corners, edges and faces, up to rounding in double. For two that
+/// are apart it is their distance.
+inline double distance_between(const FourCorners& a, const FourCorners& b) {
+    constexpr int edges[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+    constexpr int faces[4][3] = {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& e : edges)
+        for (const auto& f : edges)
+            least = std::min(least, segment_distance(a[e[0]], a[e[1]], b[f[0]], b[f[1]]));
+    for (const auto& f : faces)
+        for (int i = 0; i < 4; ++i) {
+            least = std::min(least, plane_distance(a[i], b[f[0]], b[f[1]], b[f[2]]));
+            least = std::min(least, plane_distance(b[i], a[f[0]], a[f[1]], a[f[2]]));
+        }
+    return least;
+}
+
+} // namespace tandem::support
