@@ -216,8 +216,10 @@ QueueSizes released_sizes(const Settings& settings, const DeviceInfo& info) {
 
 QueueSizes own_sizes(const Settings& settings, const DeviceInfo& info) {
     const auto group_size = number(settings, parameters::group_size);
+    // Groups of one work-item are enough for any number of cores, and a balance visits the queue of each.
+    const auto units = info.max_group_size == 1 ? 1 : info.compute_units;
     QueueSizes sizes;
-    sizes.groups = number(settings, parameters::work_items) * info.compute_units / group_size;
+    sizes.groups = number(settings, parameters::work_items) * units / group_size;
     sizes.initial_items = 3 * group_size;
     return sizes;
 }
