@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
+#include "harness/frames/frames.h"
+#include "harness/verify/references.h"
 #include "harness/verify/verification_cache.h"
+#include "tests/support/scenes.h"
 #include "tests/support/test.h"
 
 namespace tandem {
@@ -49,6 +52,29 @@ TEST_F(StoredValues, AnUnusableFolderCausesNoFailure) {
     VerificationCache("/dev/null/kept", "a").keep("one", 1);
     EXPECT_FALSE(nowhere.take("two", [](const nlohmann::json&) {}));
     EXPECT_EQ(found("a", "one"), -1);
+}
+
+/// Every member of a geometry that changes the answer is a part of the question.
+TEST_F(StoredValues, EachGeometryHasItsOwnReference) {
+    const auto scene = support::crowd(31, 4, 1);
+    const FrameRange range(scene, 0, 0);
+    std::vector<Geometry> geometries(8);
+    geometries[1].k = 8;
+    geometries[2] = {.k = 8, .coordinate_axes = true};
+    geometries[3].precision = Precision::fp64;
+    geometries[4] = {.k = 8, .rounding = Rounding::published};
+    geometries[5].placement = Placement::exact;
+    geometries[6].margin = 0.1;
+    geometries[7].margin = 0.2;
+    std::vector<Digest> computed;
+    References references(scene, range);
+    for (const auto& geometry : geometries) computed.push_back(references.digests(geometry, {}, 0).pairs);
+    EXPECT_LT(computed[0].count, computed[6].count);
+    for (int time = 0; time < 2; ++time) { // the second time from the file
+        References stored(scene, range, folder_);
+        for (std::size_t i = 0; i < geometries.size(); ++i)
+            EXPECT_EQ(stored.digests(geometries[i], {}, 0).pairs, computed[i]) << time << " " << i;
+    }
 }
 
 } // namespace
