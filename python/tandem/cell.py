@@ -28,6 +28,9 @@ BOUNDS = {
     "rounding": "safe",
     "placement": "rounded",
     "origin": "world",
+    "margin": "0",
+    "motion": "none",
+    "self": "off",
     "output": "pairs",
 }
 

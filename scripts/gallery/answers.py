@@ -3,9 +3,7 @@
 
 from tandem.cell import BOUNDS
 
-# Besides the bounds: settings that determine the pairs, with the value of records that do not have them. With
-# output=contacts, the narrow phase does too.
-FURTHER = {"self": "off", "motion": "none"}
+# Settings that determine the pairs with output=contacts, besides BOUNDS.
 NARROW_PHASE = ("contact_rule", "decision")
 
 
@@ -19,7 +17,7 @@ def work_of(source):
         cell.first_frame,
         cell.last_frame,
         cell.names["handling"],
-        *(settings.get(name, usual) for name, usual in (BOUNDS | FURTHER).items()),
+        *(settings.get(name, usual) for name, usual in BOUNDS.items()),
         settings.get("broad") == "sphere_boxes",
         *narrow,
     )  # such boxes leave out candidates that do not meet

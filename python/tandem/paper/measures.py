@@ -9,6 +9,7 @@ import numpy
 import scipy.stats
 
 from .. import resampling
+from ..cell import BOUNDS
 from ..fields import at
 from . import composed
 from .folder import SCENES
@@ -193,7 +194,11 @@ def digests(claim, folder, scene, k):
                 own = cell.settings
                 # Boxes of spheres may leave out pairs of bodies that other broad phases keep.
                 bounds = [
-                    *(str(own.get(name)) for name in ("k", "axes", "precision", "rounding", "placement")),
+                    *(
+                        str(own.get(name, usual))
+                        for name, usual in BOUNDS.items()
+                        if name not in ("origin", "output")
+                    ),
                     own.get("broad") == "sphere_boxes",
                 ]
                 group = groups.setdefault((cell.scene_digest, frame_range(cell), *bounds), {})
