@@ -29,13 +29,13 @@ inline constexpr Setting<std::int64_t> seed_threshold{
 inline constexpr Setting<std::int64_t> seed_target{
     "seed_target", 1048576, ValueRange{1, std::int64_t{1} << 31}, "SEED_TARGET",
     "maximum number of seeds in a frame, as far as levels allow, when seed_threshold is 0"};
-inline constexpr Setting<Schedule> schedule{"schedule",
-                                            Schedule::group,
-                                            {{"group", Schedule::group}, {"item", Schedule::item}},
-                                            "",
-                                            "unit that walks seeds: a work-group, if it has several "
-                                            "work-items, those of its batches that overlap, or "
-                                            "a work-item every seed a stride apart, as in the paper's code"};
+inline constexpr Setting<Schedule> schedule{
+    "schedule",
+    Schedule::group,
+    {{"group", Schedule::group}, {"item", Schedule::item}},
+    "",
+    "unit that walks seeds: a work-group those of its batches that overlap, or a work-item every seed a "
+    "stride apart, as in the paper's code"};
 inline constexpr Setting<Descent> descent{
     "descent",
     Descent::larger,

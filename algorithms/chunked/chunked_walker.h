@@ -39,11 +39,7 @@ protected:
 private:
     void do_compile(const WalkBuild& build) override;
     void do_launch(const WalkTask& task) override;
-    /// Groups of one work-item have nothing to share: on processors the walk of work-items takes 0.65 to 0.8
-    /// of the time.
-    bool is_in_groups() const {
-        return schedule_ == chunked_parameters::Schedule::group && shape_.group_size > 1;
-    }
+    bool is_in_groups() const { return schedule_ == chunked_parameters::Schedule::group; }
     std::optional<std::vector<Limit>> do_limits() const override;
     bool do_grow(const Status& status) override;
     void do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const override;

@@ -3,7 +3,6 @@
 // the exact truth of frames in between.
 #include "tests/support/frames_there.h"
 #include "tests/support/limited.h"
-#include "tests/support/long_form.h"
 #include "tests/support/message_of.h"
 #include "tests/support/scenes.h"
 #include "harness/verify/oracle/frame_truth.h"
@@ -43,12 +42,6 @@ protected:
                                             const FrameInput& input) {
         return reference(scene, input, geometry_of(session.settings()), true, Method::brute_force,
                          contact_settings_of(session.settings()));
-    }
-
-    /// All algorithms; on other devices than the host, where compilation takes long, one of each hierarchy.
-    static std::vector<const Traversal*> walks() {
-        if (GetParam() != "host" && !long_form()) return {&algorithm("tiled"), &algorithm("chunked")};
-        return {algorithms().begin(), algorithms().end()};
     }
 
     Scene scene_ = crowd(11, 9, 2);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tests/support/cells.h"
+#include "tests/support/long_form.h"
 #include "tests/support/test.h"
 
 namespace tandem::support {
@@ -10,6 +11,12 @@ namespace tandem::support {
 class OnDevice : public testing::TestWithParam<std::string> {
 protected:
     Device& on = device(GetParam());
+
+    /// All algorithms; on other devices than the host, where compilation takes long, one of each hierarchy.
+    static std::vector<const Traversal*> walks() {
+        if (GetParam() != "host" && !long_form()) return {&algorithm("tiled"), &algorithm("chunked")};
+        return {algorithms().begin(), algorithms().end()};
+    }
 
     std::unique_ptr<Session> prepare(const Traversal& traversal, const Scene& scene,
                                      const SettingTexts& given = {}) {
