@@ -106,6 +106,14 @@ class Sentences(unittest.TestCase):
             self.assertEqual([part for part in parts if part not in sentences], [], sentences)
         self.assertEqual(first_group([a])[0].title, "pile, frames 0:0, k = 18, on cuda:0 (GPU)")
         self.assertEqual(len(groups_of([a, cell_of("a", TWO_MS, "8")])), 2)  # other bounds
+        for name, usual, value in (
+            ("margin", "0", "0.1"),
+            ("motion", "none", "linear"),
+            ("self", "off", "on"),
+        ):
+            for text, count in ((usual, 1), (value, 2)):  # records of before have none of these settings
+                other = cell_of("a", TWO_MS, settings={"k": "18", name: text})
+                self.assertEqual(len(groups_of([a, other])), count, (name, text))
 
     def test_summaries(self):
         a, b = cell_of("a", ONE_MS), cell_of("b", TWO_MS)
