@@ -53,7 +53,17 @@ void check_bounds_settings(const Settings& settings) {
         throw InputError(
             "setting margin does not go with residency=published, whose code has no such bounds; "
             "leave residency and preset out");
+    const bool measures = makes_contacts(settings) && has_near_pairs(settings[parameters::contact_rule]);
+    if (measures && settings[parameters::decision] == DecisionPrecision::none)
+        throw InputError(fmt::format("setting decision=none does not go with contact_rule={}, which measures "
+                                     "pairs that do not meet; leave decision out",
+                                     settings.text("contact_rule")));
     if (settings[parameters::motion] != Motion::linear) return;
+    if (measures)
+        throw InputError(
+            fmt::format("setting motion=linear does not go with contact_rule={}, whose distances "
+                        "are those of one frame; choose another rule or contact_rule=none",
+                        settings.text("contact_rule")));
     if (is_published(settings))
         throw InputError("setting motion=linear does not go with residency=published, whose code bounds one "
                          "frame; leave residency and preset out");

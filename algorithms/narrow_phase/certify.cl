@@ -19,7 +19,7 @@
 
 // Appends a group's results to the lists. The whole group must call it.
 DEVICE void hand_out(LOCAL const uint* found, LOCAL uint* group, GLOBAL uint* open, GLOBAL uint* meeting,
-                     GLOBAL uint* status) {
+                     GLOBAL uint* near, GLOBAL uint* status) {
     BARRIER;
     for (uint i = LOCAL_ID; i < LISTS; i += GROUP_SIZE)
         group[GROUP_PLACES + i] = group[i] != 0u ? ATOMIC_ADD(status + STATUS_WAITING + i, group[i]) : 0u;
@@ -28,6 +28,8 @@ DEVICE void hand_out(LOCAL const uint* found, LOCAL uint* group, GLOBAL uint* op
         open[group[GROUP_PLACES + LIST_OPEN] + i] = found[LIST_OPEN * FOUND_CAPACITY + i];
     for (uint i = LOCAL_ID; i < group[LIST_MEETING]; i += GROUP_SIZE)
         meeting[group[GROUP_PLACES + LIST_MEETING] + i] = found[LIST_MEETING * FOUND_CAPACITY + i];
+    for (uint i = LOCAL_ID; WANTS_NEAR && i < group[LISTS - 1]; i += GROUP_SIZE)
+        near[group[GROUP_PLACES + LISTS - 1] + i] = found[(LISTS - 1) * FOUND_CAPACITY + i];
     BARRIER;
     for (uint i = LOCAL_ID; i < LISTS; i += GROUP_SIZE) group[i] = 0u;
 }
@@ -77,12 +79,13 @@ DEVICE void ask(const Candidates* all, ulong base, ulong count, LOCAL uint* aske
 }
 
 // Processes pairs first..`pair_capacity` - 1, at most OPEN_PAIRS of them, up to the count in the status.
-// `verdicts` are as in KNOWN_APART; with DECIDED, pairs not known to be apart count as meeting.
+// `verdicts` are as in KNOWN_APART; with DECIDED, pairs not known to be apart count as meeting. `margin` and
+// `near`: read and written only for rules that want near pairs.
 KERNEL void certify_pairs(GLOBAL const uint* found, uint first, uint pair_capacity, GLOBAL const uint* owners,
                           GLOBAL const real* poses, GLOBAL const uint* tetrahedra,
                           GLOBAL const real* vertices, GLOBAL const uchar* boundary,
-                          GLOBAL const uchar* verdicts, GLOBAL uint* open, GLOBAL uint* meeting,
-                          GLOBAL uint* status) {
+                          GLOBAL const uchar* verdicts, float margin, GLOBAL uint* open, GLOBAL uint* meeting,
+                          GLOBAL uint* near, GLOBAL uint* status) {
     LOCAL_ARRAY(uint, group, GROUP_WORDS);
     LOCAL_ARRAY(uint, asked, FOUND_CAPACITY);
     LOCAL_ARRAY(uint, waiting, LISTS * FOUND_CAPACITY);
@@ -105,7 +108,7 @@ KERNEL void certify_pairs(GLOBAL const uint* found, uint first, uint pair_capaci
             uints edge = SAME_WORD(0);
             const flags apart = known_apart(verdicts, index);
             uints state = SAME_WORD(PAIR_REJECTED);
-            if (!ALL(apart)) state = apart ? state : try_certificate(&all, index, &edge);
+            if (WANTS_NEAR || !ALL(apart)) state = try_certificate(&all, index, apart, margin, &edge);
             state = first_elements(present) ? state : SAME_WORD(PAIR_ABSENT);
             count_state(state, group);
             FOR_PACK(element) {
@@ -115,9 +118,12 @@ KERNEL void certify_pairs(GLOBAL const uint* found, uint first, uint pair_capaci
                               OPEN_PAIR(one - first, (uint)AT(edge, element)));
                 APPEND_IF(AT(state, element) == PAIR_MEETING, group + LIST_MEETING,
                           waiting[LIST_MEETING * FOUND_CAPACITY + entry] = one);
+                if (WANTS_NEAR)
+                    APPEND_IF(AT(state, element) == PAIR_NEAR, group + LISTS - 1,
+                              waiting[(LISTS - 1) * FOUND_CAPACITY + entry] = one);
             }
         }
-        hand_out(waiting, group, open, meeting, status);
+        hand_out(waiting, group, open, meeting, near, status);
         keep_rest(end, asked, group);
     } while (start < count);
     end_group(group, status);

@@ -5,7 +5,9 @@
 #include "algorithms/parameters/table.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <limits>
 
 namespace tandem {
 
@@ -25,7 +27,14 @@ bool bounds_miss_nothing(const Geometry& geometry) {
 bool contacts_are_equal_for_every_k(const Settings& settings) {
     return settings[parameters::output] == Output::contacts
            && settings[parameters::decision] == DecisionPrecision::exact
+           && !has_near_pairs(settings[parameters::contact_rule])
            && bounds_miss_nothing(geometry_of(settings));
+}
+
+float margin_of(const ContactSettings& settings) {
+    const auto nearest = static_cast<float>(settings.margin);
+    return double{nearest} < settings.margin ? std::nextafter(nearest, std::numeric_limits<float>::infinity())
+                                             : nearest;
 }
 
 ContactSettings contact_settings_of(const Settings& settings) {
@@ -39,6 +48,7 @@ ContactSettings contact_settings_of(const Settings& settings) {
     result.rule = settings[parameters::contact_rule];
     result.decision = settings[parameters::decision];
     result.walked = walked_of(settings);
+    if (has_near_pairs(result.rule)) result.margin = settings[parameters::margin];
     return result;
 }
 

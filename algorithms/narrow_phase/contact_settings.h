@@ -14,6 +14,7 @@ struct ContactSettings {
     DecisionPrecision decision = DecisionPrecision::fp32;
     Walked walked = Walked::all;
     SelfPairs self = SelfPairs::off;
+    double margin = 0;                ///< of rules with TANDEM_WITHIN_MARGIN
     bool within_sphere_boxes = false; ///< only pairs of bodies whose boxes overlap (broad=sphere_boxes)
     std::size_t first_body_pair = 0;  ///< the first of these body pairs, in ascending order
     std::size_t most_body_pairs = 0;  ///< and their number at most; 0: all
@@ -36,6 +37,9 @@ constexpr const char* decided_define(DecisionPrecision decision, bool by_verdict
 /// decision=exact and bounds that miss no pair that meets. The README of this folder has the proof. Throws
 /// InputError as geometry_of().
 bool contacts_are_equal_for_every_k(const Settings& settings);
+
+/// The rule's margin as kernels and the reference have it: the least float that is not below it.
+float margin_of(const ContactSettings& settings);
 
 /// Contact settings of resolved settings; of contact_rule=none, only the tetrahedra that pairs are found of.
 ContactSettings contact_settings_of(const Settings& settings);

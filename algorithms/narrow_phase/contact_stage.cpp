@@ -27,7 +27,11 @@ LaunchShape shape_for(LaunchShape shape, Precision precision) {
 
 ContactStage::ContactStage(const Bodies& bodies, const ContactSettings& settings, LaunchShape shape,
                            Launches launches)
-    : bodies_(bodies), shape_(shape_for(shape, bodies.geometry().precision)), few_shape_(shape_) {
+    : bodies_(bodies),
+      has_near_(has_near_pairs(settings.rule)),
+      margin_(margin_of(settings)),
+      shape_(shape_for(shape, bodies.geometry().precision)),
+      few_shape_(shape_) {
     few_shape_.groups = std::max(1u, few_shape_.groups / 2);
     auto& device = bodies.device();
     auto defines = row_defines(bodies.geometry(), shape_.group_size);
@@ -50,7 +54,15 @@ ContactStage::ContactStage(const Bodies& bodies, const ContactSettings& settings
         compile_kernel(device, at_once_, defines);
     }
     nothing_ = device.allocate(4, "nothing");
-    waiting_ = GrowableBuffer(device, {{"pairs to be tested", 4}, {"pairs that meet", 4}}, 0);
+    std::vector<Column> lists{{"pairs to be tested", 4}, {"pairs that meet", 4}};
+    if (has_near_) lists.push_back({"pairs apart", 4});
+    waiting_ = GrowableBuffer(device, lists, 0);
+}
+
+/// One of the lists, or an empty buffer where there is none.
+const Buffer& ContactStage::list(std::size_t number) const {
+    const bool exists = waiting_.capacity() > 0 && (number != LIST_NEAR || has_near_);
+    return exists ? waiting_.buffer(number) : nothing_;
 }
 
 /// Reserves lists for `pairs` pairs, or for fewer when memory is short, which takes more launches.
@@ -93,12 +105,13 @@ void ContactStage::find_meeting(const Range& range) {
                                                  .vertices = bodies_.vertices(),
                                                  .boundary = bodies_.boundary(),
                                                  .verdicts = verdicts(),
-                                                 .open = waiting_.buffer(LIST_OPEN),
-                                                 .meeting = waiting_.buffer(LIST_MEETING),
+                                                 .margin = margin_,
+                                                 .open = list(LIST_OPEN),
+                                                 .meeting = list(LIST_MEETING),
+                                                 .near = list(LIST_NEAR),
                                                  .status = status.buffer()};
     device.launch(certify_, grid, certify);
-    if (decides_open())
-        decision_->launch_open(range.pairs, range.first, range.end, waiting_.buffer(LIST_OPEN), status);
+    if (decides_open()) decision_->launch_open(range.pairs, range.first, range.end, list(LIST_OPEN), status);
     const kernels::separate::SeparatePairs separate{.found = range.pairs,
                                                     .first = range.first,
                                                     .owners = bodies_.owners(),
@@ -106,8 +119,9 @@ void ContactStage::find_meeting(const Range& range) {
                                                     .tetrahedra = bodies_.tetrahedra(),
                                                     .vertices = bodies_.vertices(),
                                                     .verdicts = verdicts(),
-                                                    .open = waiting_.buffer(LIST_OPEN),
-                                                    .meeting = waiting_.buffer(LIST_MEETING),
+                                                    .open = list(LIST_OPEN),
+                                                    .meeting = list(LIST_MEETING),
+                                                    .near = list(LIST_NEAR),
                                                     .status = status.buffer()};
     device.launch(separate_, grid, separate);
 }
@@ -115,21 +129,22 @@ void ContactStage::find_meeting(const Range& range) {
 /// Makes contacts of the listed pairs that meet, or of all in the range.
 void ContactStage::generate(const KernelOf<kernels::contacts::GenerateContacts>& kernel, LaunchShape shape,
                             const Range& range, const ContactRows& contacts) {
-    const kernels::contacts::GenerateContacts arguments{
-        .found = range.pairs,
-        .first = range.first,
-        .pair_capacity = range.end,
-        .owners = bodies_.owners(),
-        .poses = bodies_.poses(),
-        .tetrahedra = bodies_.tetrahedra(),
-        .vertices = bodies_.vertices(),
-        .boundary = bodies_.boundary(),
-        .verdicts = verdicts(),
-        .meeting = waiting_.capacity() > 0 ? waiting_.buffer(LIST_MEETING) : nothing_,
-        .contact_ids = contacts.ids,
-        .contact_values = contacts.values,
-        .contact_capacity = contacts.capacity,
-        .status = range.status.buffer()};
+    const kernels::contacts::GenerateContacts arguments{.found = range.pairs,
+                                                        .first = range.first,
+                                                        .pair_capacity = range.end,
+                                                        .owners = bodies_.owners(),
+                                                        .poses = bodies_.poses(),
+                                                        .tetrahedra = bodies_.tetrahedra(),
+                                                        .vertices = bodies_.vertices(),
+                                                        .boundary = bodies_.boundary(),
+                                                        .verdicts = verdicts(),
+                                                        .margin = margin_,
+                                                        .meeting = list(LIST_MEETING),
+                                                        .near = list(LIST_NEAR),
+                                                        .contact_ids = contacts.ids,
+                                                        .contact_values = contacts.values,
+                                                        .contact_capacity = contacts.capacity,
+                                                        .status = range.status.buffer()};
     bodies_.device().launch(kernel, {shape.groups, shape.group_size}, arguments);
 }
 

@@ -54,7 +54,11 @@ private:
     bool decides_open() const { return decision_ && decision_->uses_certificates(); }
     const Buffer& verdicts() const { return decision_ ? decision_->verdicts() : nothing_; }
 
+    const Buffer& list(std::size_t number) const;
+
     const Bodies& bodies_;
+    bool has_near_;                 ///< whether the rule wants pairs apart, too
+    float margin_;                  ///< its setting, rounded up
     LaunchShape shape_, few_shape_; ///< for three launches, for one
     ExpectedGroups groups_;         ///< for one launch
     // The first three are null for Launches::at_once.
@@ -63,8 +67,8 @@ private:
     KernelOf<kernels::contacts::GenerateContacts> generate_;
     KernelOf<kernels::contacts::GenerateContacts> at_once_; ///< null where it is never the better choice
     std::optional<std::uint64_t> expected_;
-    GrowableBuffer waiting_; ///< lists of pair_lists.clh, one column each: LIST_OPEN, LIST_MEETING
-    Buffer nothing_;         ///< for kernels that do not read the argument
+    GrowableBuffer waiting_;                  ///< lists of pair_lists.clh, one column each
+    Buffer nothing_;                          ///< for kernels that do not read the argument
     std::unique_ptr<DecisionStage> decision_; ///< null unless has_verdicts()
 };
 

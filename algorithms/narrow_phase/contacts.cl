@@ -12,7 +12,7 @@
 #endif
 
 // States of pairs. `pair`: as in try_all.
-DEVICE uints try_pair(const Candidates* all, uints index, flags apart, LOCAL LocalPair* pair) {
+DEVICE uints try_pair(const Candidates* all, uints index, flags apart, float margin, LOCAL LocalPair* pair) {
     flags lacks = NEVER;
     if (BOUNDARY_NEEDED != 0) {
         uints without = SAME_WORD(0);
@@ -20,10 +20,10 @@ DEVICE uints try_pair(const Candidates* all, uints index, flags apart, LOCAL Loc
         lacks = without != 0u;
     }
     uints state = lacks ? SAME_WORD(PAIR_WITHOUT_BOUNDARY) : SAME_WORD(PAIR_REJECTED);
-    const flags asked = NOT(lacks | apart);
+    const flags asked = NOT(lacks) & (WANTS_NEAR ? ALWAYS : NOT(apart));
     if (!ANY(asked)) return state;
     uints edge = SAME_WORD(0);
-    const uints by_certificate = try_certificate(all, index, &edge);
+    const uints by_certificate = try_certificate(all, index, apart, margin, &edge);
     state = asked ? by_certificate : state;
     const flags open = state == (uint)PAIR_OPEN;
     if (ANY(open)) state = open ? try_all(all, index, open, edge, pair) : state;
@@ -75,12 +75,32 @@ DEVICE void make_contacts(Features features, const MeetingPair* pair, ContactBat
 }
 #endif
 
-// `meeting`: read unless AT_ONCE. `first`, `pair_capacity` and `verdicts`: as in certify_pairs, if AT_ONCE.
+// The pairs of a launch: those that meet, then, from a group's first place on, near ones, because a group's
+// pairs should take the same way.
+typedef struct {
+    ulong end_meeting, first_near, end;
+} PairRange;
+
+DEVICE PairRange pair_range(GLOBAL uint* status, uint pair_capacity) {
+    PairRange range;
+    range.end_meeting =
+        AT_ONCE ? rows_in(status + STATUS_PAIRS, pair_capacity) : status[STATUS_WAITING + LIST_MEETING];
+    range.first_near = ~(ulong)0;
+    range.end = range.end_meeting;
+    if (!WANTS_NEAR || AT_ONCE) return range;
+    const ulong places = GROUP_SIZE * PACK;
+    range.first_near = (range.end_meeting + places - 1u) / places * places;
+    range.end = range.first_near + status[STATUS_WAITING + LIST_NEAR];
+    return range;
+}
+
+// `meeting` and `near`: read unless AT_ONCE. `margin`: as in certify_pairs. `first`, `pair_capacity` and
+// `verdicts`: as in certify_pairs, if AT_ONCE.
 KERNEL void generate_contacts(GLOBAL const uint* found, uint first, uint pair_capacity,
                               GLOBAL const uint* owners, GLOBAL const real* poses,
                               GLOBAL const uint* tetrahedra, GLOBAL const real* vertices,
-                              GLOBAL const uchar* boundary, GLOBAL const uchar* verdicts,
-                              GLOBAL const uint* meeting, GLOBAL uint* contact_ids,
+                              GLOBAL const uchar* boundary, GLOBAL const uchar* verdicts, float margin,
+                              GLOBAL const uint* meeting, GLOBAL const uint* near, GLOBAL uint* contact_ids,
                               GLOBAL real* contact_values, uint contact_capacity, GLOBAL uint* status) {
     LOCAL_ARRAY(uint, group, GROUP_WORDS);
     LOCAL_ARRAY(MeetingPair, pairs, GROUP_SIZE);
@@ -92,27 +112,30 @@ KERNEL void generate_contacts(GLOBAL const uint* found, uint first, uint pair_ca
 #endif
     const Candidates all = {found, owners, poses, tetrahedra, vertices, boundary};
     const Sink sink = {contact_ids, contact_values, status, contact_capacity};
-    const ulong count =
-        AT_ONCE ? rows_in(status + STATUS_PAIRS, pair_capacity) : status[STATUS_WAITING + LIST_MEETING];
+    const PairRange range = pair_range(status, pair_capacity);
     ulong start = (AT_ONCE ? (ulong)first : 0u) + (GROUP_ID * (uint)GROUP_SIZE) * PACK;
     begin_group(group);
     do {
         Features features = {SAME_WORD(0), SAME_WORD(0)};
         const ulong base = start + LOCAL_ID * PACK;
-        const uint present = elements_below(base, count);
+        const int is_near = WANTS_NEAR && base >= range.first_near;
+        const uint present = elements_below(base, is_near ? range.end : range.end_meeting);
         if (present != 0u) {
-            const uints index =
-                AT_ONCE ? numbers_from((uint)base, present) : entries_of(meeting, base, present);
-            flags meets = first_elements(present);
+            const uints index = AT_ONCE   ? numbers_from((uint)base, present)
+                                : is_near ? entries_of(near, base - range.first_near, present)
+                                          : entries_of(meeting, base, present);
+            flags wanted = first_elements(present);
+            flags apart = is_near ? ALWAYS : NEVER;
             if (AT_ONCE) {
                 const uints state =
-                    try_pair(&all, index, known_apart(verdicts, index), &pairs[LOCAL_ID].pair);
-                count_state(meets ? state : SAME_WORD(PAIR_ABSENT), group);
-                meets &= state == (uint)PAIR_MEETING;
+                    try_pair(&all, index, known_apart(verdicts, index), margin, &pairs[LOCAL_ID].pair);
+                count_state(wanted ? state : SAME_WORD(PAIR_ABSENT), group);
+                apart = state == (uint)PAIR_NEAR;
+                wanted &= apart | (state == (uint)PAIR_MEETING);
             }
-            if (ANY(meets)) features = prepare_contacts(&all, index, pairs + LOCAL_ID);
-            features.low = meets ? features.low : SAME_WORD(0);
-            features.high = meets ? features.high : SAME_WORD(0);
+            if (ANY(wanted)) features = prepare_contacts(&all, index, apart, margin, pairs + LOCAL_ID);
+            features.low = wanted ? features.low : SAME_WORD(0);
+            features.high = wanted ? features.high : SAME_WORD(0);
         }
 #if PACK > 1
         make_contacts(features, pairs, &batch, &sink);
@@ -120,7 +143,7 @@ KERNEL void generate_contacts(GLOBAL const uint* found, uint first, uint pair_ca
         make_contacts(features, pairs, &team, &sink);
 #endif
         start += GLOBAL_COUNT * PACK;
-    } while (start < count);
+    } while (start < range.end);
 #if PACK > 1
     write_batch(&batch, &sink);
 #endif

@@ -94,44 +94,58 @@ bool finite(const Corners<Real>& corners) {
 }
 
 /// Loads the pair and tests separation unless it is decided. Returns false, and counts why, if it makes no
-/// contacts.
+/// contacts; a pair apart makes a row if the rule wants near pairs.
 template<class Real>
-bool meets(ReferencePair<Real>& pair, const Corners<Real>& a, const Corners<Real>& b, bool decided,
-           ContactCounts& counts) {
+bool loads(ReferencePair<Real>& pair, const Corners<Real>& a, const Corners<Real>& b,
+           const ContactSettings& settings, ContactCounts& counts) {
     if (!pair.load(a, b)) {
-        ++counts.degenerate;
+        if (!pair.apart) ++counts.degenerate;
         return false;
     }
-    if (decided || !pair.separated()) return true;
+    if (pair.apart || settings.decision != DecisionPrecision::fp32 || !pair.separated()) return true;
     ++counts.rejected;
-    return false;
+    pair.apart = true;
+    return has_near_pairs(settings.rule);
 }
 
+/// Bits of corners of the sorted pair in the given one.
 template<class Real>
-std::vector<Contact<Real>> canonical_contacts(const Corners<Real>& a, const Corners<Real>& b,
-                                              const Boundaries& given, const ContactSettings& settings,
-                                              ContactCounts& counts) {
+unsigned given_corners(unsigned bits, const Sorted<Real>& first, const Sorted<Real>& second, bool swapped) {
+    unsigned of_first = 0, of_second = 0;
+    for (unsigned i = 0; i < 4; ++i) {
+        of_first |= (bits >> i & 1u) << first.names[i];
+        of_second |= (bits >> (4 + i) & 1u) << second.names[i];
+    }
+    return swapped ? of_second | of_first << 4 : of_first | of_second << 4;
+}
+
+/// `pair`: not loaded.
+template<class Real>
+std::vector<Contact<Real>> canonical_contacts(ReferencePair<Real>& pair, const Corners<Real>& a,
+                                              const Corners<Real>& b, const Boundaries& given,
+                                              const ContactSettings& settings, ContactCounts& counts) {
     if (!finite(a) || !finite(b)) {
-        ++counts.degenerate;
+        if (!pair.apart) ++counts.degenerate;
         return {};
     }
     Sorted<Real> first(a), second(b);
     Boundaries boundaries{sorted_faces(given[0], first), sorted_faces(given[1], second)};
-    const bool swapped = second.corners < first.corners;
-    if (swapped) {
+    pair.swapped = second.corners < first.corners;
+    if (pair.swapped) {
         std::swap(first, second);
         std::swap(boundaries[0], boundaries[1]);
     }
-    ReferencePair<Real> pair;
-    if (!meets(pair, first.corners, second.corners, settings.decision != DecisionPrecision::fp32, counts))
-        return {};
+    if (!loads(pair, first.corners, second.corners, settings, counts)) return {};
     auto contacts = contacts_by_rule(pair, settings.rule, boundaries);
     for (auto& contact : contacts) {
         const unsigned owner = contact.feature < 8 ? contact.feature / 4 : contact.feature < 32 ? 0 : 1;
-        const unsigned given_owner = swapped ? 1 - owner : owner;
-        contact.feature = owner == 0 ? given_feature(contact.feature, first, second, given_owner)
-                                     : given_feature(contact.feature, second, first, given_owner);
-        if (swapped)
+        const unsigned given_owner = pair.swapped ? 1 - owner : owner;
+        if (has_near_pairs(settings.rule))
+            contact.feature = given_corners(contact.feature, first, second, pair.swapped);
+        else
+            contact.feature = owner == 0 ? given_feature(contact.feature, first, second, given_owner)
+                                         : given_feature(contact.feature, second, first, given_owner);
+        if (pair.swapped)
             for (Real& x : contact.normal) x = -x + Real(0);
     }
     std::sort(contacts.begin(), contacts.end(),
@@ -150,15 +164,17 @@ std::vector<Contact<Real>> reference_contacts(const Corners<Real>& a, const Corn
         ++counts.without_boundary;
         return {};
     }
-    if (decided_apart(a, b, settings.decision, counts)) {
+    ReferencePair<Real> pair;
+    pair.margin = margin_of(settings);
+    pair.apart = decided_apart(a, b, settings.decision, counts);
+    if (pair.apart) {
         ++counts.rejected;
-        return {};
+        if (!has_near_pairs(settings.rule)) return {};
     }
     const Boundaries boundaries{boundary_a, boundary_b};
     if ((traits_of(settings.rule) & TANDEM_CANONICAL) != 0)
-        return canonical_contacts(a, b, boundaries, settings, counts);
-    ReferencePair<Real> pair;
-    if (!meets(pair, a, b, settings.decision != DecisionPrecision::fp32, counts)) return {};
+        return canonical_contacts(pair, a, b, boundaries, settings, counts);
+    if (!loads(pair, a, b, settings, counts)) return {};
     return contacts_by_rule(pair, settings.rule, boundaries);
 }
 

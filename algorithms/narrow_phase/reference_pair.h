@@ -23,8 +23,12 @@ struct ReferencePair {
     Vector<Real> origin{};
     Real size = 0;
     Real scale = 1;
+    bool apart = false;   ///< found not to meet
+    bool swapped = false; ///< the first tetrahedron is the given B
+    float margin = 0;     ///< of a rule that wants near pairs
 
-    /// Returns false if the pair is degenerate.
+    /// Returns false if a coordinate is unusable or, unless the pair is known to be apart, a volume
+    /// uncertain.
     bool load(const Corners<Real>& a, const Corners<Real>& b) {
         const Real longest_allowed = std::ldexp(Real(1), std::numeric_limits<Real>::max_exponent - 5);
         world = {a, b};
@@ -45,7 +49,7 @@ struct ReferencePair {
             for (auto& corner : solid.corners) corner = corner * scale;
         const auto normals_a = outward_normals(a);
         const auto normals_b = outward_normals(b);
-        if (!normals_a || !normals_b) return false;
+        if (!normals_a || !normals_b) return apart;
         axes = {*normals_a, *normals_b};
         for (unsigned i = 0; i < 8; ++i) solids[i / 4].normals[i % 4] = unit(axes[i / 4][i % 4]);
         return true;

@@ -12,7 +12,7 @@
 KERNEL void separate_pairs(GLOBAL const uint* found, uint first, GLOBAL const uint* owners,
                            GLOBAL const real* poses, GLOBAL const uint* tetrahedra,
                            GLOBAL const real* vertices, GLOBAL const uchar* verdicts, GLOBAL const uint* open,
-                           GLOBAL uint* meeting, GLOBAL uint* status) {
+                           GLOBAL uint* meeting, GLOBAL uint* near, GLOBAL uint* status) {
     LOCAL_ARRAY(uint, group, GROUP_WORDS);
     LOCAL_ARRAY(LocalPair, pairs, GROUP_SIZE);
     const Candidates all = {found, owners, poses, tetrahedra, vertices, 0};
@@ -28,7 +28,7 @@ KERNEL void separate_pairs(GLOBAL const uint* found, uint first, GLOBAL const ui
             const uints word = entries_of(open, base, present);
             index = first + PAIR_OF_OPEN(word);
             const flags apart = known_apart(verdicts, index);
-            state = SAME_WORD(PAIR_REJECTED);
+            state = SAME_WORD(PAIR_APART);
             if (!ALL(apart))
                 state =
                     apart ? state : try_all(&all, index, NOT(apart), EDGE_OF_OPEN(word), pairs + LOCAL_ID);
@@ -38,6 +38,12 @@ KERNEL void separate_pairs(GLOBAL const uint* found, uint first, GLOBAL const ui
         uint slot = local_index(LIST_MEETING, COUNT_FLAGS(state == (uint)PAIR_MEETING), group, status);
         FOR_PACK(element) {
             if (AT(state, element) == PAIR_MEETING) meeting[slot++] = (uint)AT(index, element);
+        }
+        if (WANTS_NEAR) {
+            slot = local_index(LISTS - 1, COUNT_FLAGS(state == (uint)PAIR_NEAR), group, status);
+            FOR_PACK(element) {
+                if (AT(state, element) == PAIR_NEAR) near[slot++] = (uint)AT(index, element);
+            }
         }
         start += GLOBAL_COUNT * PACK;
     } while (start < count);

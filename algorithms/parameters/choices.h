@@ -153,6 +153,9 @@ constexpr unsigned boundaries_needed(ContactRule rule) {
     return (traits & TANDEM_BOTH_BOUNDARY) != 0 ? 2 : (traits & TANDEM_ONE_BOUNDARY) != 0 ? 1 : 0;
 }
 
+/// Whether the rule makes one row for each pair within the margin, whether it meets or not.
+constexpr bool has_near_pairs(ContactRule rule) { return (traits_of(rule) & TANDEM_WITHIN_MARGIN) != 0; }
+
 /// PAIR_WORDS of pairs.clh.
 constexpr std::size_t words_of(PairLayout layout) { return layout == PairLayout::slots ? 2 : 4; }
 

@@ -8,43 +8,48 @@
 
 namespace tandem::support {
 
-using FourCorners = std::array<Eigen::Vector3d, 4>;
+template<class Real>
+using FourCornersOf = std::array<Eigen::Vector3<Real>, 4>;
+using FourCorners = FourCornersOf<double>;
 
 /// The distance of two segments: of the end points from the other segment, or of the lines where both feet
 /// are inside.
-inline double segment_distance(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
-                               const Eigen::Vector3d& d) {
-    const auto from_segment = [](const Eigen::Vector3d& p, const Eigen::Vector3d& from,
-                                 const Eigen::Vector3d& to) {
-        const Eigen::Vector3d along = to - from;
-        const double s = std::clamp((p - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
+template<class Real>
+Real segment_distance(const Eigen::Vector3<Real>& a, const Eigen::Vector3<Real>& b,
+                      const Eigen::Vector3<Real>& c, const Eigen::Vector3<Real>& d) {
+    const auto from_segment = [](const Eigen::Vector3<Real>& p, const Eigen::Vector3<Real>& from,
+                                 const Eigen::Vector3<Real>& to) {
+        const Eigen::Vector3<Real> along = to - from;
+        const Real s = std::clamp((p - from).dot(along) / along.squaredNorm(), Real(0), Real(1));
         return (p - from - s * along).norm();
     };
-    double least = std::min(
+    Real least = std::min(
         {from_segment(a, c, d), from_segment(b, c, d), from_segment(c, a, b), from_segment(d, a, b)});
-    const Eigen::Vector3d u = b - a, v = d - c, w = c - a, n = u.cross(v);
-    const double length = n.squaredNorm();
+    const Eigen::Vector3<Real> u = b - a, v = d - c, w = c - a, n = u.cross(v);
+    const Real length = n.squaredNorm();
     if (length == 0) return least;
-    const double s = w.cross(v).dot(n) / length, t = w.cross(u).dot(n) / length;
+    const Real s = w.cross(v).dot(n) / length, t = w.cross(u).dot(n) / length;
     if (s >= 0 && s <= 1 && t >= 0 && t <= 1) least = std::min(least, std::abs(w.dot(n)) / n.norm());
     return least;
 }
 
 /// The distance of a point from a triangle's plane, where its foot is inside; infinity elsewhere.
-inline double plane_distance(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
-                             const Eigen::Vector3d& c) {
-    const Eigen::Vector3d n = (b - a).cross(c - a);
+template<class Real>
+Real plane_distance(const Eigen::Vector3<Real>& p, const Eigen::Vector3<Real>& a,
+                    const Eigen::Vector3<Real>& b, const Eigen::Vector3<Real>& c) {
+    const Eigen::Vector3<Real> n = (b - a).cross(c - a);
     const bool inside = n.dot((b - a).cross(p - a)) >= 0 && n.dot((c - b).cross(p - b)) >= 0
                         && n.dot((a - c).cross(p - c)) >= 0;
-    return inside ? std::abs(n.dot(p - a)) / n.norm() : std::numeric_limits<double>::infinity();
+    return inside ? std::abs(n.dot(p - a)) / n.norm() : std::numeric_limits<Real>::infinity();
 }
 
-/// The least distance between the surfaces' corners, edges and faces, up to rounding in double. For two that
+/// The least distance between the surfaces' corners, edges and faces, up to rounding in Real. For two that
 /// are apart it is their distance.
-inline double distance_between(const FourCorners& a, const FourCorners& b) {
+template<class Real>
+Real distance_between(const FourCornersOf<Real>& a, const FourCornersOf<Real>& b) {
     constexpr int edges[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
     constexpr int faces[4][3] = {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
-    double least = std::numeric_limits<double>::infinity();
+    Real least = std::numeric_limits<Real>::infinity();
     for (const auto& e : edges)
         for (const auto& f : edges)
             least = std::min(least, segment_distance(a[e[0]], a[e[1]], b[f[0]], b[f[1]]));
