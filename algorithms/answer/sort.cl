@@ -35,13 +35,13 @@ KERNEL void count_pairs(GLOBAL const uint* found, uint capacity, GLOBAL const ui
         before[i] = ATOMIC_ADD(counts + places_of(found, i, firsts, places).x, 1u);
 }
 
-// Two words for each pair: bits of the features of its contacts. Each sets one bit.
+// Two words for each pair: bits of the features of its contacts, which differ modulo 64. Each sets one bit.
 KERNEL void mark_contacts(GLOBAL const uint* contact_ids, uint capacity, GLOBAL uint* masks,
                           GLOBAL const uint* status) {
     const uint rows = rows_in(status + STATUS_CONTACTS, capacity);
     for (ulong i = GLOBAL_ID; i < rows; i += GLOBAL_COUNT) {
         const WordPair contact = ((GLOBAL const WordPair*)contact_ids)[i];
-        ATOMIC_ADD(masks + 2 * (ulong)contact.x + contact.y / 32u, 1u << contact.y % 32u);
+        ATOMIC_ADD(masks + 2 * (ulong)contact.x + contact.y / 32u % 2u, 1u << contact.y % 32u);
     }
 }
 
@@ -280,8 +280,8 @@ KERNEL void place_contacts(GLOBAL const uint* contact_ids, GLOBAL const real* co
         const WordPair mask = ((GLOBAL const WordPair*)masks)[contact.x];
         const uint below = (1u << contact.y % 32u) - 1u;
         const ulong at = (ulong)starts[contact.x]
-                         + (contact.y < 32u ? COUNT_ONES(mask.x & below)
-                                            : COUNT_ONES(mask.x) + COUNT_ONES(mask.y & below));
+                         + (contact.y % 64u < 32u ? COUNT_ONES(mask.x & below)
+                                                  : COUNT_ONES(mask.x) + COUNT_ONES(mask.y & below));
         ((GLOBAL WordPair*)sorted_ids)[at] = contact;
         GLOBAL const RealRow* values = (GLOBAL const RealRow*)contact_values + 2 * i;
         GLOBAL RealRow* sorted = (GLOBAL RealRow*)sorted_values + 2 * at;

@@ -17,7 +17,10 @@ struct Sorted {
     std::array<unsigned, 4> names{0, 1, 2, 3};
 
     explicit Sorted(const Corners<Real>& given) {
-        std::stable_sort(names.begin(), names.end(), [&](auto i, auto j) { return given[i] < given[j]; });
+        // A network, which gives the names of equal corners their order, too.
+        constexpr unsigned network[][2] = {{0, 1}, {2, 3}, {0, 2}, {1, 3}, {1, 2}};
+        for (const auto& [i, j] : network)
+            if (given[names[j]] < given[names[i]]) std::swap(names[i], names[j]);
         for (unsigned i = 0; i < 4; ++i) corners[i] = given[names[i]];
     }
 };

@@ -25,10 +25,17 @@ inline std::vector<NamedRule> contact_rules() {
 /// Whether a rule has a trait of contact_rules.clh.
 inline bool has_trait(ContactRule rule, unsigned trait) { return (traits_of(rule) & trait) != 0; }
 
-/// The rules whose contacts do not depend on the order of the two tetrahedra and of their corners.
+/// Those whose contacts are points that two tetrahedra have in common.
+inline std::vector<NamedRule> common_point_rules() {
+    auto rules = contact_rules();
+    std::erase_if(rules, [](const NamedRule& named) { return has_near_pairs(named.rule); });
+    return rules;
+}
+
+/// Those of them whose contacts do not depend on the order of the two tetrahedra and of their corners.
 inline std::vector<ContactRule> canonical_contact_rules() {
     std::vector<ContactRule> rules;
-    for (const auto& [rule, name] : contact_rules())
+    for (const auto& [rule, name] : common_point_rules())
         if (has_trait(rule, TANDEM_CANONICAL)) rules.push_back(rule);
     return rules;
 }

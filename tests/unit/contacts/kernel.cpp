@@ -203,6 +203,8 @@ TYPED_TEST(ContactsKernel, EveryRuleAndDecisionEqualsTheReferenceLong) {
         {sat, fp64},         {vertex, fp64},  {published, rejecting_nothing}, {clip, rejecting_nothing}};
     for (const auto& [rule, name] : support::contact_rules()) // another test has the default rule
         if (rule != opposing) cases.push_back({rule, fp32});
+    for (const auto decision : {fp32, recheck, fp64})
+        cases.push_back({.rule = distance, .decision = decision, .margin = 0.5});
     for (const auto settings : cases) {
         const Expected<TypeParam> expected(pairs, settings);
         ASSERT_GT(expected.total, pairs.size() / 20);
@@ -217,7 +219,8 @@ TYPED_TEST(ContactsKernel, EveryRuleAndDecisionEqualsTheReferenceLong) {
             ContactKernels<TypeParam> kernels(*device, pairs, this->group_sizes(*device).back());
             // Two combinations decide before they try certificates; the others decide what certificates leave
             // undecided. One with decision=none has a single launch, too.
-            if (settings.decision != fp32 && (settings.rule == clip || settings.rule == consistent))
+            if (settings.decision != fp32
+                && (settings.rule == clip || settings.rule == consistent || settings.margin > 0))
                 kernels.set_launches(ContactStage::Launches::at_once);
             const auto outcome =
                 kernels.run(0, count, 0, count, static_cast<std::uint32_t>(expected.total), settings);

@@ -91,6 +91,7 @@ public:
         undecided_by_double_ = uploaded(std::vector<std::uint32_t>(count, ~0u));
         open_ = uploaded(std::vector<std::uint32_t>(count, ~0u));
         meeting_ = uploaded(std::vector<std::uint32_t>(count, ~0u));
+        near_ = uploaded(std::vector<std::uint32_t>(count, ~0u));
     }
 
     void set_launches(ContactStage::Launches launches) { launches_ = launches; }
@@ -101,6 +102,7 @@ public:
                              std::uint32_t pair_capacity, std::uint32_t capacity,
                              ContactSettings settings = {}) {
         auto defines = this->defines();
+        margin_ = margin_of(settings);
         defines["BOUNDARY_NEEDED"] = std::to_string(boundaries_needed(settings.rule));
         ContactOutcome<Real> outcome{std::vector<std::uint32_t>(STATUS_WORDS),
                                      std::vector<PairFeature>(capacity + 8, {~0u, ~0u}),
@@ -125,7 +127,9 @@ public:
                                                            .vertices = vertices_,
                                                            .boundary = boundary_,
                                                            .verdicts = verdicts_,
+                                                           .margin = margin_,
                                                            .meeting = meeting_,
+                                                           .near = near_,
                                                            .contact_ids = rows,
                                                            .contact_values = values,
                                                            .contact_capacity = capacity,
@@ -177,8 +181,10 @@ private:
                                                      .vertices = vertices_,
                                                      .boundary = boundary_,
                                                      .verdicts = verdicts_,
+                                                     .margin = margin_,
                                                      .open = open_,
                                                      .meeting = meeting_,
+                                                     .near = near_,
                                                      .status = status};
         const bool decides_open =
             decision == DecisionPrecision::recheck || decision == DecisionPrecision::exact;
@@ -194,6 +200,7 @@ private:
                                                         .verdicts = verdicts_,
                                                         .open = open_,
                                                         .meeting = meeting_,
+                                                        .near = near_,
                                                         .status = status};
         defines["DECIDED"] = decided_define(decision, has_verdicts(decision));
         launch(defines, separate);
@@ -247,8 +254,9 @@ private:
     StageScope scope_{device_, Stage::contact};
     std::uint32_t group_size_;
     ContactStage::Launches launches_ = ContactStage::Launches::apart;
+    float margin_ = 0;
     Buffer bodies_, poses_, tetrahedra_, vertices_, boundary_, ids_, found_, verdicts_, undecided_by_filter_,
-        undecided_by_double_, open_, meeting_;
+        undecided_by_double_, open_, meeting_, near_;
 };
 
 } // namespace tandem::unit_test

@@ -247,7 +247,7 @@ TEST_P(ContactsTurned, HaveTheSameContactsByKernelsLong) {
         }
 }
 
-INSTANTIATE_TEST_SUITE_P(Rules, ContactsTurned, testing::ValuesIn(support::contact_rules()),
+INSTANTIATE_TEST_SUITE_P(Rules, ContactsTurned, testing::ValuesIn(support::common_point_rules()),
                          [](const auto& test) { return test.param.name; });
 
 } // namespace
