@@ -135,7 +135,8 @@ SettingTexts resident_row(SettingTexts row) {
 }
 
 /// Splits a row that combines values that exclude each other: one row with the later ones, one with those of
-/// the published data path. Contacts of a frame with a successor need exact decisions.
+/// the published data path. Contacts of a frame with a successor need exact decisions; distances are those of
+/// one frame, and need a decision.
 std::vector<SettingTexts> possible(const std::vector<SettingTexts>& rows) {
     const SettingTexts published{{"broad", "sphere"}, {"order", "any"}, {"margin", "0"}, {"motion", "none"}};
     std::vector<SettingTexts> all;
@@ -145,10 +146,14 @@ std::vector<SettingTexts> possible(const std::vector<SettingTexts>& rows) {
         const auto first = is_resident ? resident_row(row) : row;
         all.push_back(first);
         if (row.at("motion") == "linear") all.back()["decision"] = "exact";
+        const bool measures = row.at("contact_rule") == "distance";
+        if (measures && row.at("motion") == "linear") all.back()["contact_rule"] = "sat";
         if (first == row) continue;
         all.push_back(row);
         for (const auto& [name, value] : published) all.back()[name] = value;
     }
+    for (auto& row : all)
+        if (row.at("contact_rule") == "distance" && row.at("decision") == "none") row["decision"] = "fp32";
     return all;
 }
 

@@ -229,7 +229,7 @@ TYPED_TEST(ContactsDistance, HardPairsAreMeasuredAndNoneIsLostLong) {
         EXPECT_EQ(errors.beyond, 0u);
         EXPECT_LE(errors.distance, 8);
         EXPECT_LE(errors.length, 4);
-        EXPECT_LE(errors.support, 16);
+        EXPECT_LE(errors.support, 32);
         if (static_cast<Family>(i) == Family::nested)
             EXPECT_GE(errors.meeting, pairs - pairs / 1000) << "a few are flat";
         else
