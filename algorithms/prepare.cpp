@@ -47,6 +47,21 @@ Settings with_decision(Settings settings, const DeviceInfo& info) {
     return settings;
 }
 
+/// Throws InputError if the contact rule or the data path does not fit the output.
+void check_output(const Settings& settings) {
+    const auto rule = settings[parameters::contact_rule];
+    if (settings[parameters::output] == Output::contacts && rule == ContactRule::none)
+        throw InputError("setting output=contacts needs a contact rule; leave contact_rule out, or choose "
+                         "output=pairs");
+    if (settings[parameters::output] != Output::distances) return;
+    if (!has_near_pairs(rule))
+        throw InputError("setting output=distances needs contact_rule=distance; set it, or choose "
+                         "output=contacts");
+    if (is_published(settings))
+        throw InputError("setting output=distances does not go with residency=published, whose code keeps "
+                         "all contacts; leave residency and preset out");
+}
+
 /// Throws InputError if other settings do not fit margin or motion=linear.
 void check_bounds_settings(const Settings& settings) {
     if (settings[parameters::margin] > 0 && is_published(settings))
@@ -299,10 +314,7 @@ Settings Traversal::fitted(const Settings& asked, const DeviceInfo& info, const 
     if (settings[tandem::parameters::broad] == Broad::device && is_published(settings))
         throw InputError("setting broad=device does not go with residency=published, whose bounds are on the "
                          "host; choose broad=sphere");
-    if (settings[tandem::parameters::output] == Output::contacts
-        && settings[tandem::parameters::contact_rule] == ContactRule::none)
-        throw InputError("setting output=contacts needs a contact rule; leave contact_rule out, or choose "
-                         "output=pairs");
+    check_output(settings);
     if (settings[tandem::parameters::order] == AnswerOrder::canonical) {
         if (!has_pairs(settings[tandem::parameters::output]))
             throw InputError("setting order=canonical needs pairs; choose output=pairs, or leave order out");

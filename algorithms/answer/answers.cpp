@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 
 #include <algorithm>
+#include <cstring>
 #include <fmt/format.h>
 
 namespace tandem {
@@ -287,6 +288,17 @@ void HostPart::add_contacts(const AnswerBuffers& buffers, std::uint64_t count) {
     values_.resize(first + count * buffers.contacts.row_bytes(contact_values));
     const StageScope scope(device, Stage::read);
     device.download(buffers.contacts.buffer(contact_values), std::span(values_).subspan(first));
+}
+
+void HostPart::keep_contacts(std::span<const std::size_t> kept) {
+    if (ids_.empty()) return;
+    const auto bytes = values_.size() / ids_.size();
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+        ids_[i] = ids_[kept[i]];
+        std::memmove(values_.data() + i * bytes, values_.data() + kept[i] * bytes, bytes);
+    }
+    ids_.resize(kept.size());
+    values_.resize(kept.size() * bytes);
 }
 
 /// Converts the pairs in blocks, because a part may take most of the host's memory.

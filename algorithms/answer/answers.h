@@ -97,6 +97,10 @@ public:
     void append_contacts(std::vector<ContactPoint>& contacts) const override;
     void count_by_body(std::vector<std::uint64_t>& counts) const override;
 
+    std::size_t contact_count() const { return ids_.size(); }
+    /// Removes all contacts but these, which are in ascending order.
+    void keep_contacts(std::span<const std::size_t> kept);
+
 private:
     std::shared_ptr<const AnswerTools> tools_;
     Pair pair(std::uint64_t row) const { return tools_->pair_of(rows_.data() + row * tools_->row_words()); }

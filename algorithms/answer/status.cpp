@@ -8,8 +8,8 @@ namespace tandem {
 namespace {
 
 /// By number of the bound.
-constexpr std::array<std::string_view, EXCEEDED_WORDS> bounds{"the queries of a body pair",
-                                                              "the node pairs in a queue"};
+constexpr std::array<std::string_view, EXCEEDED_WORDS> bounds{
+    "the queries of a body pair", "the node pairs in a queue", "the body pairs that have contacts"};
 
 } // namespace
 

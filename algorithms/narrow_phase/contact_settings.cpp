@@ -49,6 +49,7 @@ ContactSettings contact_settings_of(const Settings& settings) {
     result.decision = settings[parameters::decision];
     result.walked = walked_of(settings);
     if (has_near_pairs(result.rule)) result.margin = settings[parameters::margin];
+    result.closest = settings[parameters::output] == Output::distances;
     return result;
 }
 

@@ -189,7 +189,7 @@ OrderedMesh ordered(const Mesh& mesh, MeshOrder order) {
 }
 
 Walked walked_of(const Settings& settings) {
-    const bool leaves_out = settings[parameters::output] == Output::contacts
+    const bool leaves_out = leaves_out_pairs(settings[parameters::output])
                             && boundaries_needed(settings[parameters::contact_rule]) == 2
                             && !is_published(settings);
     return leaves_out ? Walked::boundary : Walked::all;

@@ -113,11 +113,17 @@ enum class Output {
     pairs, ///< candidate pairs and their contacts
     count,
     digest,
-    contacts ///< as pairs, without the tetrahedra that cannot make contacts (walked_of)
+    contacts, ///< as pairs, without the tetrahedra that cannot make contacts (walked_of)
+    distances ///< as contacts, of which each body pair keeps the one with the least distance
 };
 
 /// Whether an answer has pairs, and contacts with a contact rule.
-constexpr bool has_pairs(Output output) { return output == Output::pairs || output == Output::contacts; }
+constexpr bool has_pairs(Output output) { return output != Output::count && output != Output::digest; }
+
+/// Whether an answer may lack candidate pairs that make no contacts.
+constexpr bool leaves_out_pairs(Output output) {
+    return output == Output::contacts || output == Output::distances;
+}
 
 /// Rule that makes contacts of a colliding pair: one of contact_rules.clh, or none.
 enum class ContactRule {

@@ -188,11 +188,13 @@ inline constexpr Setting<Output> output{
     {{"pairs", Output::pairs},
      {"count", Output::count},
      {"digest", Output::digest},
-     {"contacts", Output::contacts}},
+     {"contacts", Output::contacts},
+     {"distances", Output::distances}},
     "OUTPUT",
     "output of a walk: pairs: candidate pairs, and contacts; count, digest: only these of the pairs; "
-    "contacts: as pairs, without interior tetrahedra if contact_rule=opposing or published, whose contacts "
-    "are the same"};
+    "contacts: as pairs, without interior tetrahedra if the contact rule makes contacts of boundary faces "
+    "only, so that they are the same; distances: as contacts, with contact_rule=distance, of each body pair "
+    "the least distance"};
 inline constexpr Setting<AnswerOrder> order{
     "order",
     AnswerOrder::any,

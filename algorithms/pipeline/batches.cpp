@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <deque>
 #include <fmt/format.h>
+#include <map>
 
 namespace tandem {
 
@@ -21,6 +22,36 @@ struct Batch {
 
     bool windowed() const { return item_end != 0; }
 };
+
+/// Keeps of the contacts of each body pair the one with the least distance, as ClosestStage does: several
+/// parts may have found some. Returns how many stay.
+std::uint64_t keep_closest(std::span<const std::shared_ptr<HostPart>> parts) {
+    struct Place {
+        double distance;
+        Pair pair;
+        std::size_t part, contact;
+
+        auto operator<=>(const Place&) const = default;
+    };
+    std::map<std::pair<std::uint32_t, std::uint32_t>, Place> closest;
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+        std::vector<ContactPoint> contacts;
+        parts[part]->append_contacts(contacts);
+        for (std::size_t i = 0; i < contacts.size(); ++i) {
+            const auto& pair = contacts[i].pair;
+            const Place place{contacts[i].depth, pair, part, i};
+            const auto [best, is_first] = closest.try_emplace({pair.body_a, pair.body_b}, place);
+            if (!is_first) best->second = std::min(best->second, place);
+        }
+    }
+    std::vector<std::vector<std::size_t>> kept(parts.size());
+    for (const auto& [bodies, place] : closest) kept[place.part].push_back(place.contact);
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+        std::ranges::sort(kept[part]);
+        parts[part]->keep_contacts(kept[part]);
+    }
+    return closest.size();
+}
 
 class BatchRun {
 public:
@@ -45,6 +76,7 @@ private:
     std::vector<BodyPair> pairs_;
     std::deque<Batch> todo_;
     std::shared_ptr<AnswerBuffers> answer_;
+    std::vector<std::shared_ptr<HostPart>> finished_;
     FrameResult result_;
     bool fits_ = false;
 };
@@ -136,7 +168,11 @@ void BatchRun::make_contacts(HostPart& host, std::uint64_t pairs) {
     for (std::uint64_t first = 0; first < pairs;) {
         const auto end = std::min(pairs, first + step);
         status.write(words);
-        pipeline_.contacts->launch(answer_->pairs.buffer(), ContactRows(*answer_), first, end, status);
+        const ContactRows kept(*answer_);
+        const auto& closest = pipeline_.closest;
+        pipeline_.contacts->launch(answer_->pairs.buffer(), closest ? closest->source(*answer_) : kept, first,
+                                   end, status);
+        if (closest) closest->launch(*answer_, kept, pairs_.size(), status);
         status.read();
         const auto made = status.counter(STATUS_CONTACTS);
         const auto capacity = answer_->contacts.capacity();
@@ -151,7 +187,7 @@ void BatchRun::make_contacts(HostPart& host, std::uint64_t pairs) {
         host.add_contacts(*answer_, made);
         result_.contacts += made;
         words = status.words();
-        words[STATUS_CONTACTS] = words[STATUS_CONTACTS + 1] = 0;
+        for (const auto counter : {STATUS_CONTACTS, STATUS_CLOSEST}) words[counter] = words[counter + 1] = 0;
         first = end;
     }
 }
@@ -172,6 +208,7 @@ void BatchRun::finish_part() {
         throw;
     }
     add_counts();
+    finished_.push_back(host);
     result_.parts.push_back(std::move(host));
 }
 
@@ -210,8 +247,11 @@ FrameResult BatchRun::run(std::uint64_t batches) {
         run_batch(batch);
     }
     pipeline_.compile(false);
+    // A pair has at most one of the contacts of which some are kept.
+    const auto contacts = pipeline_.closest ? result_.count : result_.contacts;
+    if (pipeline_.closest) result_.contacts = keep_closest(finished_);
     fits_ = result_.count <= answer_->pairs.capacity()
-            && (!pipeline_.makes_contacts() || result_.contacts <= answer_->contacts.capacity());
+            && (!pipeline_.makes_contacts() || contacts <= answer_->contacts.capacity());
     result_.batches = std::max<std::uint64_t>(result_.batches, 1);
     return std::move(result_);
 }

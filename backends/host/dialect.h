@@ -37,6 +37,12 @@ inline constinit thread_local bool in_parallel = false;
     return std::exchange(*pointer, *pointer + value);
 }
 
+/// Replaces a word that has the expected value; returns the value before.
+[[gnu::always_inline]] inline uint replace(uint* pointer, uint expected, uint value) {
+    __atomic_compare_exchange_n(pointer, &expected, value, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED);
+    return expected;
+}
+
 /// Adds to a work-group's own memory.
 [[gnu::always_inline]] inline uint fetch_add_locally(uint* pointer, uint value) {
     return std::exchange(*pointer, *pointer + value);

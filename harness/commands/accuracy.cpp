@@ -184,10 +184,11 @@ int accuracy_command(const AccuracyOptions& options) {
     auto cells = request.sets.empty() ? sweep(request, devices) : plan(request, devices);
     keep_matching(cells, options.run.filter);
     for (const auto& cell : cells)
-        if (cell.settings[parameters::output] == Output::contacts)
+        if (leaves_out_pairs(cell.settings[parameters::output]))
             throw InputError(
-                "accuracy needs all candidate pairs, and output=contacts may leave some out; set "
-                "output=pairs");
+                fmt::format("accuracy needs all candidate pairs, and output={} may leave some out; set "
+                            "output=pairs",
+                            cell.settings.text("output")));
     auto scenes = options.scenes;
     // An empty name stands for --mesh; without meshes it causes the error message.
     if (scenes.empty()) scenes.emplace_back();

@@ -144,15 +144,18 @@ void check_outputs(const RunOptions& options, std::span<const Cell> cells) {
     for (const auto& cell : cells) {
         if (dumps && !has_pairs(cell.settings[parameters::output]))
             throw InputError("dumps need pairs; leave output out or set output=pairs");
-        const bool leaves_out = cell.settings[parameters::output] == Output::contacts;
+        const bool leaves_out = leaves_out_pairs(cell.settings[parameters::output]);
+        const auto output = cell.settings.text("output");
         if (leaves_out && !options.dump_pairs.empty())
             throw InputError(
-                "--dump-pairs needs all candidate pairs, and output=contacts may leave some out; "
-                "set output=pairs");
+                fmt::format("--dump-pairs needs all candidate pairs, and output={} may leave some out; "
+                            "set output=pairs",
+                            output));
         if (leaves_out && options.truth_is_given && options.truth == TruthAmount::pairs)
             throw InputError(
-                "--truth pairs needs all candidate pairs, and output=contacts may leave some out; "
-                "set output=pairs, or choose --truth contacts");
+                fmt::format("--truth pairs needs all candidate pairs, and output={} may leave some out; "
+                            "set output=pairs, or choose --truth contacts",
+                            output));
         if (!options.dump_contacts.empty() && cell.settings[parameters::contact_rule] == ContactRule::none)
             throw InputError("--dump-contacts needs contacts; leave contact_rule out");
     }

@@ -121,7 +121,7 @@ void LocalSampler::add_errors(Truths& truths, std::size_t index, const FrameResu
 /// The truth of pairs is of all pairs. That of motion has rounded positions.
 bool LocalSampler::has_truth(const Truths& truths) const {
     if (geometry_.motion == Motion::linear && geometry_.placement == Placement::exact) return false;
-    return truths.amount() == TruthAmount::contacts || out_.settings[parameters::output] != Output::contacts;
+    return truths.amount() == TruthAmount::contacts || !leaves_out_pairs(out_.settings[parameters::output]);
 }
 
 void LocalSampler::add_counts(const FrameResult& result) {

@@ -91,13 +91,17 @@ void test_all(const Bounds<Real>& a, const Bounds<Real>& b, Hit hit) {
             if (overlapping(a.tetrahedron(ta), b.tetrahedron(tb), a.axes, a.published)) hit(ta, tb);
 }
 
-/// Adds the contacts of some of the pairs. A digest does not depend on the order, so that parallel parts may
-/// finish in any order.
+/// A contact and its pair.
+template<class Real>
+using PairContact = std::pair<Pair, Contact<Real>>;
+
+/// Adds the contacts of some of the pairs. Parallel parts may finish in any order.
 template<class Real>
 void add_contacts(const Scene& scene, const std::vector<Bounds<Real>>& bounds, std::span<const Pair> pairs,
-                  const ContactSettings& settings, ReferenceAnswer& answer, std::mutex& mutex) {
+                  const ContactSettings& settings, std::vector<PairContact<Real>>& all,
+                  ReferenceAnswer& answer, std::mutex& mutex) {
     ContactCounts counts;
-    Digest digest;
+    std::vector<PairContact<Real>> found;
     const auto corners = [&](std::uint32_t body, std::uint32_t tetrahedron) {
         std::array<std::array<Real, 3>, 4> result;
         for (int i = 0; i < 4; ++i)
@@ -108,20 +112,12 @@ void add_contacts(const Scene& scene, const std::vector<Bounds<Real>>& bounds, s
     for (const auto& p : pairs) {
         const auto flags_a = scene.meshes[scene.bodies[p.body_a].mesh].boundary[p.tet_a];
         const auto flags_b = scene.meshes[scene.bodies[p.body_b].mesh].boundary[p.tet_b];
-        for (const auto& contact :
-             reference_contacts<Real>(corners(p.body_a, p.tet_a), corners(p.body_b, p.tet_b), flags_a,
-                                      flags_b, counts, settings)) {
-            const auto [a, b] = contact_terms<Real>(p.body_a, p.tet_a, p.body_b, p.tet_b, contact);
-            ++digest.count;
-            digest.a += a;
-            digest.b += b;
-        }
+        for (const auto& contact : reference_contacts<Real>(
+                 corners(p.body_a, p.tet_a), corners(p.body_b, p.tet_b), flags_a, flags_b, counts, settings))
+            found.emplace_back(p, contact);
     }
     const std::scoped_lock lock(mutex);
-    answer.contacts += digest.count;
-    answer.contact_digest.count += digest.count;
-    answer.contact_digest.a += digest.a;
-    answer.contact_digest.b += digest.b;
+    all.insert(all.end(), found.begin(), found.end());
     answer.degenerate += counts.degenerate;
     answer.without_boundary += counts.without_boundary;
     answer.rejected += counts.rejected;
@@ -199,6 +195,27 @@ void keep_within_boxes(const Scene& scene, const FrameInput& input, const Geomet
     keep_pairs_of(from.first(std::min(most, from.size())), answer.pairs);
 }
 
+/// Leaves of each body pair the contact with the least distance; of equal ones that of the first pair.
+template<class Real>
+void keep_closest(std::vector<PairContact<Real>>& contacts) {
+    const auto bodies = [](const PairContact<Real>& c) { return std::pair(c.first.body_a, c.first.body_b); };
+    std::ranges::sort(contacts, {},
+                      [&](const auto& c) { return std::tuple(bodies(c), c.second.depth, c.first); });
+    const auto rest = std::ranges::unique(contacts, {}, bodies);
+    contacts.erase(rest.begin(), rest.end());
+}
+
+/// Order-free.
+template<class Real>
+Digest digest_of_contacts(std::span<const PairContact<Real>> contacts) {
+    Digest digest;
+    for (const auto& [p, contact] : contacts) {
+        const auto [a, b] = contact_terms<Real>(p.body_a, p.tet_a, p.body_b, p.tet_b, contact);
+        digest += {1, a, b};
+    }
+    return digest;
+}
+
 template<class Real>
 ReferenceAnswer answer_in(const Scene& scene, const FrameInput& input, const Geometry& geometry,
                           bool contacts, Method method, const ContactSettings& settings) {
@@ -237,12 +254,16 @@ ReferenceAnswer answer_in(const Scene& scene, const FrameInput& input, const Geo
     answer.digest = digest_of(answer.pairs);
     if (!contacts) return answer;
     std::mutex mutex;
+    std::vector<PairContact<Real>> made;
     constexpr std::size_t part = 4096;
     parallel_for((answer.pairs.size() + part - 1) / part, [&](std::size_t i) {
         const auto all = std::span<const Pair>(answer.pairs);
         add_contacts(scene, bounds, all.subspan(i * part, std::min(part, all.size() - i * part)), settings,
-                     answer, mutex);
+                     made, answer, mutex);
     });
+    if (settings.closest) keep_closest(made);
+    answer.contact_digest = digest_of_contacts<Real>(made);
+    answer.contacts = answer.contact_digest.count;
     return answer;
 }
 

@@ -30,14 +30,14 @@ std::string References::cache_key(const Key& key) const {
     const bool moves = geometry.motion == Motion::linear;
     return fmt::format(
         "frame {:016x}{}, k {} {}, precision {}, rounding {}, placement {}, origin {}{}, rule {}, "
-        "decision {}, walked {}{}{}",
+        "decision {}, walked {}{}{}{}",
         digest_of(*range_.frame(index)),
         moves ? fmt::format(" to {:016x}", digest_of(*range_.frame(index + 1))) : "", geometry.k,
         geometry.coordinate_axes, static_cast<int>(geometry.precision), static_cast<int>(geometry.rounding),
         static_cast<int>(geometry.placement), static_cast<int>(geometry.origin),
         geometry.margin > 0 ? fmt::format(", margin {}", geometry.margin) : "",
         static_cast<int>(contacts.rule), static_cast<int>(contacts.decision),
-        static_cast<int>(contacts.walked),
+        static_cast<int>(contacts.walked), contacts.closest ? ", closest" : "",
         contacts.self == SelfPairs::off ? "" : fmt::format(", self {}", static_cast<int>(contacts.self)),
         contacts.within_sphere_boxes ? fmt::format(", within boxes of spheres from {} at most {}",
                                                    contacts.first_body_pair, contacts.most_body_pairs)
