@@ -5,6 +5,7 @@
 #include "algorithms/kernels/sources.h"
 
 #include <algorithm>
+#include <span>
 
 namespace tandem {
 
@@ -168,7 +169,9 @@ void ContactStage::launch(const Buffer& pairs, const ContactRows& contacts, std:
         return;
     }
     reserve_lists(end - first);
-    bool waiting = status.counter(STATUS_WAITING) != 0; // pairs of an earlier launch
+    const auto lengths = std::span(status.words()).subspan(STATUS_WAITING, STATUS_WAITING_WORDS);
+    bool waiting =
+        std::ranges::any_of(lengths, [](auto length) { return length != 0; }); // of an earlier launch
     for (auto from = first; from < end; from += waiting_.capacity()) {
         if (waiting) device.clear(status.buffer(), STATUS_WAITING_WORDS * 4, STATUS_WAITING * 4);
         const Range range{pairs, static_cast<std::uint32_t>(from),

@@ -15,21 +15,6 @@ namespace {
 using namespace support;
 using ::testing::HasSubstr;
 
-/// The corners of a tetrahedron of a body, as the scene has them.
-FourCorners corners_of(const Scene& scene, const Frame& frame, std::uint32_t body, std::uint32_t number) {
-    const auto& mesh = scene.meshes[scene.bodies[body].mesh];
-    FourCorners corners;
-    for (int i = 0; i < 4; ++i) {
-        const auto vertex = mesh.tetrahedra[number][static_cast<std::size_t>(i)];
-        const auto& pose = frame.poses[body];
-        corners[static_cast<std::size_t>(i)] =
-            scene.bodies[body].deformable
-                ? frame.deformed[body][vertex]
-                : pose.rotation.normalized() * mesh.vertices[vertex] + pose.translation;
-    }
-    return corners;
-}
-
 /// The pairs of a frame that are apart and within `margin`. Some that meet may be among them.
 std::vector<Pair> pairs_within(const Scene& scene, const Frame& frame, double margin) {
     std::vector<std::vector<FourCorners>> all(scene.bodies.size());

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "scenes/scene.h"
+
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
@@ -59,6 +61,22 @@ Real distance_between(const FourCornersOf<Real>& a, const FourCornersOf<Real>& b
             least = std::min(least, plane_distance(b[i], a[f[0]], a[f[1]], a[f[2]]));
         }
     return least;
+}
+
+/// The corners of a tetrahedron of a body, as the scene has them.
+inline FourCorners corners_of(const Scene& scene, const Frame& frame, std::uint32_t body,
+                              std::uint32_t number) {
+    const auto& mesh = scene.meshes[scene.bodies[body].mesh];
+    FourCorners corners;
+    for (int i = 0; i < 4; ++i) {
+        const auto vertex = mesh.tetrahedra[number][static_cast<std::size_t>(i)];
+        const auto& pose = frame.poses[body];
+        corners[static_cast<std::size_t>(i)] =
+            scene.bodies[body].deformable
+                ? frame.deformed[body][vertex]
+                : pose.rotation.normalized() * mesh.vertices[vertex] + pose.translation;
+    }
+    return corners;
 }
 
 } // namespace tandem::support
