@@ -289,7 +289,14 @@ std::vector<KernelCost> Traversal::costs(const Scene& scene, const Settings& set
 
 AlgorithmStages Traversal::build(const BuildContext& context) const { return do_build(context); }
 
+SettingTexts with_rule_of_output(SettingTexts given) {
+    const auto output = given.find("output");
+    if (output != given.end() && output->second == "distances") given.try_emplace("contact_rule", "distance");
+    return given;
+}
+
 SettingTexts with_reliable_contacts(SettingTexts given) {
+    given = with_rule_of_output(std::move(given));
     given.try_emplace("contact_rule", "sat");
     given.try_emplace("decision", "usual");
     return given;
@@ -297,8 +304,8 @@ SettingTexts with_reliable_contacts(SettingTexts given) {
 
 Settings Traversal::settings(const SettingTexts& given, std::string_view preset) const {
     const auto& chosen = preset.empty() ? presets().front() : tandem::preset(*this, preset);
-    return resolve(parameters(), chosen.values, chosen.reproduces ? given : with_reliable_contacts(given),
-                   name());
+    return resolve(parameters(), chosen.values,
+                   chosen.reproduces ? with_rule_of_output(given) : with_reliable_contacts(given), name());
 }
 
 Settings Traversal::fitted(const Settings& asked, const DeviceInfo& info, const Scene* scene) const {

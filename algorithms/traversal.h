@@ -151,6 +151,8 @@ private:
 
 /// The settings with the contact rule and the decision to rely on, where neither is given.
 SettingTexts with_reliable_contacts(SettingTexts given);
+/// With the contact rule that output=distances needs, unless another is given.
+SettingTexts with_rule_of_output(SettingTexts given);
 
 /// A way to find candidate pairs. Stateless; added by one line in list.cpp.
 class Traversal {

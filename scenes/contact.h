@@ -18,7 +18,9 @@ struct Pair {
     auto operator<=>(const Pair&) const = default;
 };
 
-/// A contact between a pair: point and normal (out of body a) in world coordinates, depth < 0 inside.
+/// A contact between a pair: point and normal (out of body a) in world coordinates, depth < 0 inside. Of a
+/// rule that measures distances: the point of a that is closest to b, the normal towards b's, and the
+/// distance.
 struct ContactPoint {
     Pair pair;                     ///< the two tetrahedra
     std::uint32_t feature = 0;     ///< number defined by algorithms/narrow_phase
@@ -26,5 +28,12 @@ struct ContactPoint {
         normal{};                  ///< x, y, z; of length 1, within rounding
     double depth = 0;              ///< in the scene's unit of length
 };
+
+/// The point of b, where the contact rule measures distances.
+inline std::array<double, 3> other_point(const ContactPoint& contact) {
+    auto point = contact.point;
+    for (std::size_t i = 0; i < 3; ++i) point[i] += contact.normal[i] * contact.depth;
+    return point;
+}
 
 } // namespace tandem

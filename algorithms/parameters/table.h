@@ -193,8 +193,8 @@ inline constexpr Setting<Output> output{
     "OUTPUT",
     "output of a walk: pairs: candidate pairs, and contacts; count, digest: only these of the pairs; "
     "contacts: as pairs, without interior tetrahedra if the contact rule makes contacts of boundary faces "
-    "only, so that they are the same; distances: as contacts, with contact_rule=distance, of each body pair "
-    "the least distance"};
+    "only, so that they are the same; distances: as contacts, but of each body pair only the least distance, "
+    "with contact_rule=distance"};
 inline constexpr Setting<AnswerOrder> order{
     "order",
     AnswerOrder::any,

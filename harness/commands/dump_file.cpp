@@ -44,6 +44,18 @@ void DumpFile::contacts(std::size_t frame, std::span<const ContactPoint> contact
     write_pieces(text, 1);
 }
 
+void DumpFile::distances(std::size_t frame, std::span<const ContactPoint> contacts) {
+    auto text = begun();
+    for (const auto& c : contacts) {
+        const auto b = other_point(c);
+        fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", frame,
+                       c.pair.body_a, c.pair.tet_a, c.pair.body_b, c.pair.tet_b, c.point[0], c.point[1],
+                       c.point[2], b[0], b[1], b[2], c.normal[0], c.normal[1], c.normal[2], c.depth);
+        write_pieces(text, piece_bytes);
+    }
+    write_pieces(text, 1);
+}
+
 void DumpFile::chunks(std::size_t number, const Mesh& mesh, std::span<const std::uint32_t> order,
                       std::uint32_t leaves) {
     auto text = begun();

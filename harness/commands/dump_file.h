@@ -21,6 +21,8 @@ public:
     /// decimals that read back as the same numbers. Throws OutputError when the file cannot be written.
     void pairs(std::size_t frame, std::span<const Pair> pairs);
     void contacts(std::size_t frame, std::span<const ContactPoint> contacts);
+    /// Contacts of a rule that measures distances: the points of both tetrahedra.
+    void distances(std::size_t frame, std::span<const ContactPoint> contacts);
     /// Appends the tetrahedra of mesh `number`, in mesh coordinates. `order` maps position to tetrahedron:
     /// `leaves` successive positions form a chunk, and `leaves` successive chunks form a super chunk.
     void chunks(std::size_t number, const Mesh& mesh, std::span<const std::uint32_t> order,
@@ -39,6 +41,9 @@ private:
 inline constexpr std::string_view pairs_header = "frame,body_a,tet_a,body_b,tet_b\n";
 inline constexpr std::string_view contacts_header =
     "frame,body_a,tet_a,body_b,tet_b,px,py,pz,nx,ny,nz,depth\n";
+
+inline constexpr std::string_view distances_header =
+    "frame,body_a,tet_a,body_b,tet_b,ax,ay,az,bx,by,bz,nx,ny,nz,distance\n";
 
 inline constexpr std::string_view chunks_header =
     "mesh,tetrahedron,position,chunk,super_chunk,x0,y0,z0,x1,y1,z1,x2,y2,z2,x3,y3,z3\n";

@@ -11,6 +11,7 @@ namespace tandem {
 Dumps::Dumps(const RunOptions& options, bool writes)
     : pairs_(writes ? options.dump_pairs : std::string(), pairs_header),
       contacts_(writes ? options.dump_contacts : std::string(), contacts_header),
+      distances_(writes ? options.dump_distances : std::string(), distances_header),
       trace_(writes ? options.trace : std::string()) {}
 
 void Dumps::dump(const Cell& cell, const Task& task) {
@@ -25,13 +26,17 @@ void Dumps::dump(const Cell& cell, const Task& task) {
         if (!task.options.dump_contacts.empty())
             if (const auto found = result.download_contacts(); contacts_)
                 contacts_.contacts(task.range.first() + i, found);
+        if (!task.options.dump_distances.empty())
+            if (const auto found = result.download_contacts(); distances_)
+                distances_.distances(task.range.first() + i, found);
     }
     pairs_.finish();
+    distances_.finish();
     contacts_.finish();
 }
 
 void Dumps::write(const Cell& cell, const Task& task) {
-    if (!task.options.dump_pairs.empty() || !task.options.dump_contacts.empty()) dump(cell, task);
+    if (task.options.has_dumps()) dump(cell, task);
     if (!task.options.trace.empty()) trace_.write(trace_frame(cell, task));
 }
 

@@ -7,8 +7,8 @@
 
 namespace tandem {
 
-/// The files of --dump-pairs, --dump-contacts and --trace, which have the answer and the timeline of one
-/// cell.
+/// The files of --dump-pairs, --dump-contacts, --dump-distances and --trace, which have the answer and the
+/// timeline of one cell.
 class Dumps {
 public:
     /// Makes sure that the files can be written. Without `writes`, as on all ranks but the first, the other
@@ -23,7 +23,7 @@ public:
 private:
     void dump(const Cell& cell, const Task& task);
 
-    DumpFile pairs_, contacts_;
+    DumpFile pairs_, contacts_, distances_;
     TimelineFile trace_;
 };
 

@@ -171,8 +171,7 @@ void Run::write_dumps(const Task& task, const Results& results) {
 int Run::end(int code) {
     if (options_.profile > 0) return interrupted_ ? Interrupt::exit_code() : code;
     const auto& file = records_->file();
-    const bool lacks_dump =
-        measured_ == 0 && !(options_.dump_pairs.empty() && options_.dump_contacts.empty());
+    const bool lacks_dump = measured_ == 0 && options_.has_dumps();
     if (records_->left_out() > 0)
         put("{} cells are already in {}{}\n", records_->left_out(), options_.out,
             lacks_dump ? "; no dump is written: run again without --resume" : "");

@@ -66,7 +66,7 @@ void RunGroups::open_team() {
 /// Dumps and traces are written for the first finished cell, so there must be only one group.
 void RunGroups::check_one_group() const {
     if (all_.groups.size() <= 1) return;
-    if (!options_.dump_pairs.empty() || !options_.dump_contacts.empty())
+    if (options_.has_dumps())
         throw InputError("dumps need one scene and one range of its frames; name one of each");
     if (!options_.trace.empty())
         throw InputError("--trace needs one scene and one range of its frames; name one of each");

@@ -181,7 +181,8 @@ std::vector<const Preset*> choose_presets(const Request& request, const Traversa
 Cell make_cell(const Traversal& traversal, const Preset& preset, const SettingTexts& given,
                const DeviceGroup& devices) {
     Cell cell{&traversal, std::string(preset.name),
-              resolve(traversal.parameters(), preset.values, given, traversal.name()), devices};
+              resolve(traversal.parameters(), preset.values, with_rule_of_output(given), traversal.name()),
+              devices};
     traversal.check(cell.devices, cell.settings);
     return cell;
 }

@@ -135,10 +135,11 @@ void check_coordinates(const Cell& cell, const Scene& scene, const FrameRange& r
 
 void check_outputs(const RunOptions& options, std::span<const Cell> cells) {
     std::set<std::filesystem::path> paths;
-    for (const auto* path : {&options.out, &options.dump_pairs, &options.dump_contacts, &options.trace})
+    for (const auto* path :
+         {&options.out, &options.dump_pairs, &options.dump_contacts, &options.dump_distances, &options.trace})
         if (!path->empty() && !paths.insert(followed(*path)).second)
             throw InputError(fmt::format("{}: named for two outputs; choose another file", *path));
-    const bool dumps = !options.dump_pairs.empty() || !options.dump_contacts.empty();
+    const bool dumps = options.has_dumps();
     if (options.profile > 0 && (dumps || !options.out.empty() || !options.trace.empty()))
         throw InputError("--profile only replays frames; leave out --out, --trace and dumps");
     for (const auto& cell : cells) {
@@ -158,6 +159,12 @@ void check_outputs(const RunOptions& options, std::span<const Cell> cells) {
                             output));
         if (!options.dump_contacts.empty() && cell.settings[parameters::contact_rule] == ContactRule::none)
             throw InputError("--dump-contacts needs contacts; leave contact_rule out");
+        const bool measures = has_near_pairs(cell.settings[parameters::contact_rule]);
+        if (!options.dump_contacts.empty() && measures)
+            throw InputError(fmt::format("contact_rule={} makes distances; use --dump-distances",
+                                         cell.settings.text("contact_rule")));
+        if (!options.dump_distances.empty() && !measures)
+            throw InputError("--dump-distances needs contact_rule=distance; set it, or use --dump-contacts");
     }
 }
 

@@ -38,6 +38,7 @@ struct RunOptions { // NOLINT(clang-analyzer-optin.performance.Padding): in the 
     double timeout = 0;                     ///< seconds that such a process may take; 0: no limit
     std::string out;                        ///< append records to this file; empty: none are written
     std::string dump_pairs, dump_contacts;  ///< CSV files of the first finished cell; empty: none
+    std::string dump_distances;             ///< the same
     std::string trace;                      ///< timeline of one frame of the first finished cell; empty: none
     std::vector<std::string> require;       ///< devices or backends whose absence is a failure
     bool check = true;                      ///< compare answers with the reference
@@ -53,6 +54,10 @@ struct RunOptions { // NOLINT(clang-analyzer-optin.performance.Padding): in the 
     TableFormat format = TableFormat::text;   ///< of printed tables
     std::vector<std::string> columns;         ///< columns of throughput in printed tables (throughput.h)
     bool quiet = false;
+
+    bool has_dumps() const {
+        return !(dump_pairs.empty() && dump_contacts.empty() && dump_distances.empty());
+    }
 };
 
 /// The plan of the options, or one of a single product.

@@ -290,6 +290,10 @@ Action add_run(CLI::App& app) {
                    "write the candidate pairs of the first finished cell to this CSV file");
     app.add_option("--dump-contacts", options.dump_contacts,
                    "write the contacts of the first finished cell to this CSV file");
+    app.add_option(
+        "--dump-distances", options.dump_distances,
+        "write the distances of the first finished cell (contact_rule=distance), with both points, to "
+        "this CSV file");
     app.add_option("--trace", options.trace, trace_help);
     app.add_flag("!--no-count", options.count, "skip the replay that counts work");
     app.add_flag("!--no-check", options.check, "do not compare with the reference");
