@@ -66,8 +66,23 @@ std::vector<Pair> Answer::pairs() const {
 std::vector<ContactPoint> Answer::contacts() const {
     const auto lock = collider_->lock();
     check_pairs_kept();
-    if (collider_->settings()[parameters::contact_rule] == ContactRule::none)
+    const auto rule = collider_->settings()[parameters::contact_rule];
+    if (rule == ContactRule::none)
         throw InputError("setting contact_rule=none makes no contacts; make the collider without it");
+    if (has_near_pairs(rule))
+        throw InputError(
+            fmt::format("setting contact_rule={} makes distances, not contacts; call distances()",
+                        collider_->settings().text("contact_rule")));
+    return result_.download_contacts();
+}
+
+std::vector<ContactPoint> Answer::distances() const {
+    const auto lock = collider_->lock();
+    check_pairs_kept();
+    if (!has_near_pairs(collider_->settings()[parameters::contact_rule]))
+        throw InputError(fmt::format("setting contact_rule={} makes no distances; make the collider with "
+                                     "contact_rule=\"distance\" and a margin",
+                                     collider_->settings().text("contact_rule")));
     return result_.download_contacts();
 }
 
@@ -131,10 +146,11 @@ Rows pairs(const Answer& answer) {
 }
 
 /// Views of the columns of one array of records: pairs, features, points, normals, depths.
+template<auto which>
 nb::tuple contacts(const Answer& answer) {
     auto found = [&] {
         const nb::gil_scoped_release released;
-        return answer.contacts();
+        return (answer.*which)();
     }();
     const auto count = found.size();
     const auto [data, owner] = owned(std::move(found));
@@ -190,7 +206,8 @@ void bind_answer(nb::module_& module) {
         .def("contact_digest", &digest<&Answer::contact_digest>)
         .def("pairs", &pairs<&Answer::pairs>)
         .def("meeting", &pairs<&Answer::meeting>)
-        .def("contacts", &contacts)
+        .def("contacts", &contacts<&Answer::contacts>)
+        .def("distances", &contacts<&Answer::distances>)
         .def("pairs_on_device", &pairs_on_device);
 }
 

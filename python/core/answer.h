@@ -28,6 +28,9 @@ public:
     /// Sorted. Throw InputError if the settings keep no pairs or make no contacts.
     std::vector<Pair> pairs() const;
     std::vector<ContactPoint> contacts() const;
+    /// Contacts of a rule that measures distances. Throws InputError also for other rules; contacts() for
+    /// this.
+    std::vector<ContactPoint> distances() const;
     /// Those of pairs() whose tetrahedra meet in the frame (meeting_of). A frame in memory of a device is
     /// read back from what the last run left there. Throws InputError also if another run has followed that
     /// one, and with placement=exact, whose vertices have no such numbers.

@@ -30,6 +30,19 @@ class Contacts(NamedTuple):
     depths: numpy.ndarray  #: (n,) float64: in the meshes' unit, < 0 inside
 
 
+class Distances(NamedTuple):
+    """Distances of a frame, sorted by pair: of contact_rule="distance", one row for each pair of boundary
+    tetrahedra within the margin. A pair that meets has a negative distance, the depth of the least translation that
+    parts it; its points are those that touch after it."""
+
+    pairs: numpy.ndarray  #: (n, 4) int32, as of Contacts
+    features: numpy.ndarray  #: (n,) uint32: bits 0..3 and 4..7: the corners of a and of b that span the point's corner, edge or face
+    points_a: numpy.ndarray  #: (n, 3) float64: of tetrahedron a, closest to b, in world coordinates
+    points_b: numpy.ndarray  #: (n, 3) float64: of tetrahedron b; points_a + distances * normals
+    normals: numpy.ndarray  #: (n, 3) float64: unit vectors from a to b
+    distances: numpy.ndarray  #: (n,) float64: in the meshes' unit, < 0 for pairs that meet
+
+
 class Answer:
     """Result of one run. Later runs of the collider do not change it. It keeps the collider's memory until it
     is deleted."""
@@ -116,6 +129,19 @@ class Answer:
         pairs, *columns = self._core.contacts()
         return Contacts(self._numbering.rows_of(pairs), *columns)
 
+    def distances(self) -> Distances:
+        """Distances (see Distances), in host memory: with contact_rule="distance" of all pairs within the margin, with
+        output="distances" the least of each body pair."""
+        pairs, features, points, normals, distances = self._core.distances()
+        return Distances(
+            self._numbering.rows_of(pairs),
+            features,
+            points,
+            points + normals * distances[:, None],
+            normals,
+            distances,
+        )
+
     def __repr__(self) -> str:
         return f"<tandem.Answer: {self.count} pairs, {self.contact_count} contacts>"
 
@@ -159,7 +185,8 @@ class Queued:
     @property
     def contact_values(self) -> Any:
         """(capacity, 8) float32, float64 with precision="double": point relative to `origin`, normal out of
-        body a, depth, and a column that is not used."""
+        body a, depth, and a column that is not used. With contact_rule="distance" the point is that of body a, and
+        the distance replaces the depth."""
         return self._core.contact_values
 
     @property

@@ -8,7 +8,7 @@ from typing import Any, Iterable, Mapping, NamedTuple, Sequence
 import numpy
 
 from . import _core
-from .answers import Answer, Contacts, Digest, Queued
+from .answers import Answer, Contacts, Digest, Distances, Queued
 from .arguments import (
     body_pairs_of,
     filters_of,
@@ -286,6 +286,10 @@ class Collider:
     ) -> Contacts:
         """run(...).contacts()."""
         return self.run(poses, vertices, next_poses=next_poses, next_vertices=next_vertices).contacts()
+
+    def distances(self, poses: Any = None, vertices: Any = None) -> Distances:
+        """run(...).distances()."""
+        return self.run(poses, vertices).distances()
 
     def meeting(
         self, poses: Any = None, vertices: Any = None, *, next_poses: Any = None, next_vertices: Any = None

@@ -71,6 +71,34 @@ class Swept(ColliderCase):
                     self.assertEqual(collider.count(poses), count)
                     self.assertEqual(float(collider.settings["margin"]), float(margin))
 
+    def test_distances(self):
+        vertices = numpy.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], float)
+        mesh = (vertices, numpy.array([[0, 1, 2, 3]]))
+        rows = [[0, 0, 0, 1, 0, 0, 0], [1.25, 0, 0, 1, 0, 0, 0], [0.75, 2, 0, 1, 0, 0, 0]]
+        for device in DEVICES:
+            for output, given in (("pairs", {"contact_rule": "distance"}), ("distances", {})):
+                with self.subTest(device=device, output=output):
+                    collider = tandem.Collider([mesh] * 3, device=device, margin=2, output=output, **given)
+                    found = collider.distances(rows)
+                    self.assertEqual(found.pairs.tolist(), [[0, 0, 1, 0], [0, 0, 2, 0], [1, 0, 2, 0]])
+                    self.assertEqual(found.points_a[0].tolist(), [1, 0, 0])
+                    self.assertEqual(found.points_b[0].tolist(), [1.25, 0, 0])
+                    self.assertEqual((found.distances[0], found.normals[0].tolist()), (0.25, [1, 0, 0]))
+                    self.assertEqual(found.features[0], 0b10 | 1 << 4)  # corner 1 of a, corner 0 of b
+                    self.assertEqual(found.points_a[1:].tolist(), [[0, 1, 0], [1.25, 1, 0]])
+                    between = numpy.linalg.norm(found.points_b - found.points_a, axis=1)
+                    self.assertLess(abs(between - found.distances).max(), 1e-6)
+                    apart = collider.run(rows)
+                    with self.assertRaisesRegex(ValueError, "makes distances, not contacts; call distances"):
+                        apart.contacts()
+            with self.assertRaisesRegex(ValueError, "contact_rule=sat makes no distances"):
+                tandem.Collider([mesh] * 3, device=device, margin=2).distances(rows)
+            meeting = tandem.Collider([mesh] * 2, device=device, contact_rule="distance").distances(
+                [rows[0], [0.75, 0, 0, 1, 0, 0, 0]]
+            )
+            self.assertAlmostEqual(meeting.distances[0], -0.25 / 3**0.5, 6)  # along the sloping face
+            self.assertLess(meeting.normals[0] @ (meeting.points_b - meeting.points_a)[0], 0)
+
     def test_deformable_bodies(self):
         scene = tandem.make_scene("plates")
         given = {"motion": "linear", "decision": "exact"}
