@@ -123,18 +123,19 @@ std::string p99(const std::vector<double>& samples) {
 }
 
 void print_header() {
-    put("{:>9} {:>9} {:>9} {:>10} {:>10} {:>9} {:>10} {:>9} {:>9} {:>9}  cell\n", "ms/frame", "missed",
-        "lost", "false", "ratio", "no answer", "depth/uL", "degrees", "point/L", "volume");
+    put("{:>9} {:>9} {:>9} {:>10} {:>10} {:>9} {:>10} {:>9} {:>9} {:>9} {:>9}  cell\n", "ms/frame", "missed",
+        "lost", "false", "ratio", "no answer", "depth/uL", "degrees", "point/L", "volume", "dist/uL");
 }
 
 /// Errors of contacts are 99th percentiles.
 void print_row(const Cell& cell, const Measurement& m) {
     const auto& e = *m.errors;
     const auto contacts = e.contacts.value_or(ContactErrors{});
-    put("{:>9.3g} {:>9} {:>9} {:>10} {:>10} {:>9} {:>10} {:>9} {:>9} {:>9}  {}{}\n", frame_ms(m), e.missed(),
-        e.rounding ? fmt::to_string(e.rounding->lost) : "-", e.pairs.disjoint, number(e.candidate_ratio()),
-        contacts.unanswered, p99(contacts.depth_ulps), p99(contacts.normal_degrees), p99(contacts.point),
-        p99(contacts.volume_relative), describe(cell), e.missed() > 0 ? "  MISSES" : "");
+    put("{:>9.3g} {:>9} {:>9} {:>10} {:>10} {:>9} {:>10} {:>9} {:>9} {:>9} {:>9}  {}{}\n", frame_ms(m),
+        e.missed(), e.rounding ? fmt::to_string(e.rounding->lost) : "-", e.pairs.disjoint,
+        number(e.candidate_ratio()), contacts.unanswered, p99(contacts.depth_ulps),
+        p99(contacts.normal_degrees), p99(contacts.point), p99(contacts.volume_relative),
+        p99(contacts.distance_ulps), describe(cell), e.missed() > 0 ? "  MISSES" : "");
 }
 
 /// Measures all cells on one scene, until a record cannot be written or an interrupt. Returns the exit code.
@@ -172,6 +173,15 @@ int measure_scene(const RunOptions& options, const std::vector<Cell>& cells, Rec
     return Interrupt::asked() && !file.failed() ? Interrupt::exit_code() : code;
 }
 
+void check_outputs(std::span<const Cell> cells) {
+    for (const auto& cell : cells)
+        if (leaves_out_pairs(cell.settings[parameters::output]))
+            throw InputError(
+                fmt::format("accuracy needs all candidate pairs, and output={} may leave some out; set "
+                            "output=pairs",
+                            cell.settings.text("output")));
+}
+
 } // namespace
 
 int accuracy_command(const AccuracyOptions& options) {
@@ -183,12 +193,7 @@ int accuracy_command(const AccuracyOptions& options) {
     const auto devices = open_devices(options.run, backends, request.devices);
     auto cells = request.sets.empty() ? sweep(request, devices) : plan(request, devices);
     keep_matching(cells, options.run.filter);
-    for (const auto& cell : cells)
-        if (leaves_out_pairs(cell.settings[parameters::output]))
-            throw InputError(
-                fmt::format("accuracy needs all candidate pairs, and output={} may leave some out; set "
-                            "output=pairs",
-                            cell.settings.text("output")));
+    check_outputs(cells);
     auto scenes = options.scenes;
     // An empty name stands for --mesh; without meshes it causes the error message.
     if (scenes.empty()) scenes.emplace_back();

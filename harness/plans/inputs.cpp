@@ -133,6 +133,42 @@ void check_coordinates(const Cell& cell, const Scene& scene, const FrameRange& r
     for (std::size_t i = 0; i < last; ++i) check_coordinates(cell, scene, *range.frame(i));
 }
 
+namespace {
+
+/// Throws InputError where an option asks for contacts or distances that the cell's rule does not make.
+void check_rule_outputs(const RunOptions& options, const Settings& settings) {
+    const auto rule = settings[parameters::contact_rule];
+    if (!options.dump_contacts.empty() && rule == ContactRule::none)
+        throw InputError("--dump-contacts needs contacts; leave contact_rule out");
+    if (!options.dump_contacts.empty() && has_near_pairs(rule))
+        throw InputError(fmt::format("contact_rule={} makes distances; use --dump-distances",
+                                     settings.text("contact_rule")));
+    if (!options.dump_distances.empty() && !has_near_pairs(rule))
+        throw InputError("--dump-distances needs contact_rule=distance; set it, or use --dump-contacts");
+}
+
+/// The same for what the cell's output leaves out.
+void check_cell_outputs(const RunOptions& options, const Cell& cell) {
+    const auto& settings = cell.settings;
+    if (options.has_dumps() && !has_pairs(settings[parameters::output]))
+        throw InputError("dumps need pairs; leave output out or set output=pairs");
+    const auto output = settings.text("output");
+    const bool leaves_out = leaves_out_pairs(settings[parameters::output]);
+    if (leaves_out && !options.dump_pairs.empty())
+        throw InputError(
+            fmt::format("--dump-pairs needs all candidate pairs, and output={} may leave some out; "
+                        "set output=pairs",
+                        output));
+    if (leaves_out && options.truth_is_given && options.truth == TruthAmount::pairs)
+        throw InputError(
+            fmt::format("--truth pairs needs all candidate pairs, and output={} may leave some out; "
+                        "set output=pairs, or choose --truth contacts",
+                        output));
+    check_rule_outputs(options, settings);
+}
+
+} // namespace
+
 void check_outputs(const RunOptions& options, std::span<const Cell> cells) {
     std::set<std::filesystem::path> paths;
     for (const auto* path :
@@ -142,30 +178,7 @@ void check_outputs(const RunOptions& options, std::span<const Cell> cells) {
     const bool dumps = options.has_dumps();
     if (options.profile > 0 && (dumps || !options.out.empty() || !options.trace.empty()))
         throw InputError("--profile only replays frames; leave out --out, --trace and dumps");
-    for (const auto& cell : cells) {
-        if (dumps && !has_pairs(cell.settings[parameters::output]))
-            throw InputError("dumps need pairs; leave output out or set output=pairs");
-        const bool leaves_out = leaves_out_pairs(cell.settings[parameters::output]);
-        const auto output = cell.settings.text("output");
-        if (leaves_out && !options.dump_pairs.empty())
-            throw InputError(
-                fmt::format("--dump-pairs needs all candidate pairs, and output={} may leave some out; "
-                            "set output=pairs",
-                            output));
-        if (leaves_out && options.truth_is_given && options.truth == TruthAmount::pairs)
-            throw InputError(
-                fmt::format("--truth pairs needs all candidate pairs, and output={} may leave some out; "
-                            "set output=pairs, or choose --truth contacts",
-                            output));
-        if (!options.dump_contacts.empty() && cell.settings[parameters::contact_rule] == ContactRule::none)
-            throw InputError("--dump-contacts needs contacts; leave contact_rule out");
-        const bool measures = has_near_pairs(cell.settings[parameters::contact_rule]);
-        if (!options.dump_contacts.empty() && measures)
-            throw InputError(fmt::format("contact_rule={} makes distances; use --dump-distances",
-                                         cell.settings.text("contact_rule")));
-        if (!options.dump_distances.empty() && !measures)
-            throw InputError("--dump-distances needs contact_rule=distance; set it, or use --dump-contacts");
-    }
+    for (const auto& cell : cells) check_cell_outputs(options, cell);
 }
 
 } // namespace tandem

@@ -45,6 +45,10 @@ Fields<AnswerErrors> contact_spreads() {
                                "whose vertices the points of every rule are; 1 where the points span none",
                                &ContactErrors::volume_relative);
     volume.occurrence.since = 4;
+    auto distance = spread_field(
+        "distance_ulps", "|distance - exact| / (u L) of pairs that are apart, of contact_rule=distance",
+        &ContactErrors::distance_ulps);
+    distance.occurrence.optional = true;
     return {spread_field("depth_relative",
                          "|deepest - exact| / exact, the exact depth that of the least translation",
                          &ContactErrors::depth_relative),
@@ -59,7 +63,8 @@ Fields<AnswerErrors> contact_spreads() {
             spread_field("hausdorff",
                          "Hausdorff distance of contact points and the exact intersection's vertices / L",
                          &ContactErrors::hausdorff),
-            volume};
+            volume,
+            distance};
 }
 
 /// Fields of answers that have contacts.

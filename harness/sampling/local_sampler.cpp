@@ -103,6 +103,7 @@ void LocalSampler::add_errors(Truths& truths, std::size_t index, const FrameResu
     answer.pairs = digest;
     answer.contacts = contacts;
     answer.makes_contacts = makes_contacts(out_.settings);
+    answer.measures = answer.makes_contacts && has_near_pairs(out_.settings[parameters::contact_rule]);
     answer.walked = walked_of(out_.settings);
     answer.self = out_.settings[parameters::self];
     std::vector<Pair> pairs;

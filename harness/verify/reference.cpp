@@ -95,35 +95,82 @@ void test_all(const Bounds<Real>& a, const Bounds<Real>& b, Hit hit) {
 template<class Real>
 using PairContact = std::pair<Pair, Contact<Real>>;
 
-/// Adds the contacts of some of the pairs. Parallel parts may finish in any order.
+/// Leaves of each body pair the contact with the least distance; of equal ones that of the first pair.
 template<class Real>
-void add_contacts(const Scene& scene, const std::vector<Bounds<Real>>& bounds, std::span<const Pair> pairs,
-                  const ContactSettings& settings, std::vector<PairContact<Real>>& all,
-                  ReferenceAnswer& answer, std::mutex& mutex) {
-    ContactCounts counts;
-    std::vector<PairContact<Real>> found;
-    const auto corners = [&](std::uint32_t body, std::uint32_t tetrahedron) {
-        std::array<std::array<Real, 3>, 4> result;
+void keep_closest(std::vector<PairContact<Real>>& contacts) {
+    const auto bodies = [](const PairContact<Real>& c) { return std::pair(c.first.body_a, c.first.body_b); };
+    std::ranges::sort(contacts, {},
+                      [&](const auto& c) { return std::tuple(bodies(c), c.second.depth, c.first); });
+    const auto rest = std::ranges::unique(contacts, {}, bodies);
+    contacts.erase(rest.begin(), rest.end());
+}
+
+/// Order-free.
+template<class Real>
+Digest digest_of_contacts(std::span<const PairContact<Real>> contacts) {
+    Digest digest;
+    for (const auto& [p, contact] : contacts) {
+        const auto [a, b] = contact_terms<Real>(p.body_a, p.tet_a, p.body_b, p.tet_b, contact);
+        digest += {1, a, b};
+    }
+    return digest;
+}
+
+/// Makes the contacts of an answer's pairs. Parallel parts may finish in any order.
+template<class Real>
+class ContactMaker {
+public:
+    ContactMaker(const Scene& scene, const std::vector<Bounds<Real>>& bounds, const ContactSettings& settings,
+                 ReferenceAnswer& answer)
+        : scene_(scene), bounds_(bounds), settings_(settings), answer_(answer) {}
+
+    /// Of some of the pairs.
+    void add(std::span<const Pair> pairs) {
+        ContactCounts counts;
+        std::vector<PairContact<Real>> found;
+        for (const auto& p : pairs) {
+            const auto flags_a = scene_.meshes[scene_.bodies[p.body_a].mesh].boundary[p.tet_a];
+            const auto flags_b = scene_.meshes[scene_.bodies[p.body_b].mesh].boundary[p.tet_b];
+            for (const auto& contact :
+                 reference_contacts<Real>(corners(p.body_a, p.tet_a), corners(p.body_b, p.tet_b), flags_a,
+                                          flags_b, counts, settings_))
+                found.emplace_back(p, contact);
+        }
+        if (settings_.closest) keep_closest(found);
+        const auto digest = settings_.closest ? Digest{} : digest_of_contacts<Real>(found);
+        const std::scoped_lock lock(mutex_);
+        if (settings_.closest) closest_.insert(closest_.end(), found.begin(), found.end());
+        answer_.contact_digest += digest;
+        answer_.degenerate += counts.degenerate;
+        answer_.without_boundary += counts.without_boundary;
+        answer_.rejected += counts.rejected;
+        answer_.undecided_by_filter += counts.undecided_by_filter;
+        answer_.undecided_by_double += counts.undecided_by_double;
+    }
+
+    /// Call it after all pairs.
+    void finish() {
+        keep_closest(closest_);
+        answer_.contact_digest += digest_of_contacts<Real>(closest_);
+        answer_.contacts = answer_.contact_digest.count;
+    }
+
+private:
+    Corners<Real> corners(std::uint32_t body, std::uint32_t tetrahedron) const {
+        Corners<Real> result;
         for (int i = 0; i < 4; ++i)
             result[i] =
-                bounds[body].vertices[scene.meshes[scene.bodies[body].mesh].tetrahedra[tetrahedron][i]];
+                bounds_[body].vertices[scene_.meshes[scene_.bodies[body].mesh].tetrahedra[tetrahedron][i]];
         return result;
-    };
-    for (const auto& p : pairs) {
-        const auto flags_a = scene.meshes[scene.bodies[p.body_a].mesh].boundary[p.tet_a];
-        const auto flags_b = scene.meshes[scene.bodies[p.body_b].mesh].boundary[p.tet_b];
-        for (const auto& contact : reference_contacts<Real>(
-                 corners(p.body_a, p.tet_a), corners(p.body_b, p.tet_b), flags_a, flags_b, counts, settings))
-            found.emplace_back(p, contact);
     }
-    const std::scoped_lock lock(mutex);
-    all.insert(all.end(), found.begin(), found.end());
-    answer.degenerate += counts.degenerate;
-    answer.without_boundary += counts.without_boundary;
-    answer.rejected += counts.rejected;
-    answer.undecided_by_filter += counts.undecided_by_filter;
-    answer.undecided_by_double += counts.undecided_by_double;
-}
+
+    const Scene& scene_;
+    const std::vector<Bounds<Real>>& bounds_;
+    const ContactSettings& settings_;
+    ReferenceAnswer& answer_;
+    std::mutex mutex_;
+    std::vector<PairContact<Real>> closest_; ///< with settings.closest, of the parts so far
+};
 
 /// Whether each mesh has a boundary face.
 std::vector<bool> have_boundary(const Scene& scene) {
@@ -195,27 +242,6 @@ void keep_within_boxes(const Scene& scene, const FrameInput& input, const Geomet
     keep_pairs_of(from.first(std::min(most, from.size())), answer.pairs);
 }
 
-/// Leaves of each body pair the contact with the least distance; of equal ones that of the first pair.
-template<class Real>
-void keep_closest(std::vector<PairContact<Real>>& contacts) {
-    const auto bodies = [](const PairContact<Real>& c) { return std::pair(c.first.body_a, c.first.body_b); };
-    std::ranges::sort(contacts, {},
-                      [&](const auto& c) { return std::tuple(bodies(c), c.second.depth, c.first); });
-    const auto rest = std::ranges::unique(contacts, {}, bodies);
-    contacts.erase(rest.begin(), rest.end());
-}
-
-/// Order-free.
-template<class Real>
-Digest digest_of_contacts(std::span<const PairContact<Real>> contacts) {
-    Digest digest;
-    for (const auto& [p, contact] : contacts) {
-        const auto [a, b] = contact_terms<Real>(p.body_a, p.tet_a, p.body_b, p.tet_b, contact);
-        digest += {1, a, b};
-    }
-    return digest;
-}
-
 template<class Real>
 ReferenceAnswer answer_in(const Scene& scene, const FrameInput& input, const Geometry& geometry,
                           bool contacts, Method method, const ContactSettings& settings) {
@@ -253,17 +279,13 @@ ReferenceAnswer answer_in(const Scene& scene, const FrameInput& input, const Geo
     if (settings.within_sphere_boxes) keep_within_boxes(scene, input, geometry, settings, bounds, answer);
     answer.digest = digest_of(answer.pairs);
     if (!contacts) return answer;
-    std::mutex mutex;
-    std::vector<PairContact<Real>> made;
+    ContactMaker<Real> maker(scene, bounds, settings, answer);
     constexpr std::size_t part = 4096;
     parallel_for((answer.pairs.size() + part - 1) / part, [&](std::size_t i) {
         const auto all = std::span<const Pair>(answer.pairs);
-        add_contacts(scene, bounds, all.subspan(i * part, std::min(part, all.size() - i * part)), settings,
-                     made, answer, mutex);
+        maker.add(all.subspan(i * part, std::min(part, all.size() - i * part)));
     });
-    if (settings.closest) keep_closest(made);
-    answer.contact_digest = digest_of_contacts<Real>(made);
-    answer.contacts = answer.contact_digest.count;
+    maker.finish();
     return answer;
 }
 

@@ -136,7 +136,7 @@ SettingTexts resident_row(SettingTexts row) {
 
 /// Splits a row that combines values that exclude each other: one row with the later ones, one with those of
 /// the published data path. Contacts of a frame with a successor need exact decisions; distances are those of
-/// one frame, and need a decision.
+/// one frame.
 std::vector<SettingTexts> possible(const std::vector<SettingTexts>& rows) {
     const SettingTexts published{{"broad", "sphere"}, {"order", "any"}, {"margin", "0"}, {"motion", "none"}};
     std::vector<SettingTexts> all;
@@ -152,8 +152,6 @@ std::vector<SettingTexts> possible(const std::vector<SettingTexts>& rows) {
         all.push_back(row);
         for (const auto& [name, value] : published) all.back()[name] = value;
     }
-    for (auto& row : all)
-        if (row.at("contact_rule") == "distance" && row.at("decision") == "none") row["decision"] = "fp32";
     return all;
 }
 

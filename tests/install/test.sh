@@ -70,6 +70,11 @@ if command -v pkg-config >/dev/null && PKG_CONFIG_PATH=$work/prefix/lib/pkgconfi
   c++ -O1 -o "$work/collide" "$folder/../../scripts/examples/collide.cpp" $(pkg-config --cflags --libs tandem)
   [ "$("$work/collide")" = "$collide" ]
 fi
+distances=$("$work/consumer/distances")
+[ "$distances" = "step 0: farther than 0.3
+step 1: 0.265 from 1.000 0.000 0.000 to 1.250 0.063 0.063
+step 2: 0.072 from 0.958 0.021 0.021 to 1.000 0.062 0.062
+step 3: -0.072 from 0.792 0.104 0.104 to 0.750 0.063 0.063" ] || { echo "distances: $distances" >&2; exit 1; }
 [ -s "$work"/prefix/share/doc/tandem/LICENSE ]
 [ -s "$work"/prefix/share/doc/tandem/NOTICE.md ]
 # A component that this build has not is refused by name.

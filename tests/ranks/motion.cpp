@@ -52,6 +52,9 @@ TEST_F(RankMotion, GhostsAreWithinTheMargin) {
         expect_paths_equal(soft_procession(24, 3, 0.35), {{"margin", margin}});
     }
     expect_frames_equal(leaping_row(24), algorithm("tiled"), own_device(), {{"margin", "2.5"}});
+    for (const std::string output : {"pairs", "distances"})
+        expect_frames_equal(procession(24, 3, 0.35), algorithm("tiled"), own_device(),
+                            {{"margin", "0.5"}, {"contact_rule", "distance"}, {"output", output}});
 }
 
 /// Arcs about distant origins of meshes are longer than skins.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/verify/accuracy/answer_errors.h"
 
+#include "geometry/exact_distance.h"
 #include "harness/verify/accuracy/hull.h"
 #include "geometry/volume.h"
 #include "base/parallel.h"
@@ -71,7 +72,7 @@ double angle(const std::array<double, 3>& n, const std::array<double, 3>& m) {
 
 /// Adds the samples of one pair.
 void compare(const ContactTruth& truth, double size, std::span<const ContactPoint> contacts, double unit,
-             ContactErrors& errors) {
+             bool measures, ContactErrors& errors) {
     ++errors.overlapping;
     if (contacts.empty()) {
         ++errors.unanswered;
@@ -90,6 +91,7 @@ void compare(const ContactTruth& truth, double size, std::span<const ContactPoin
     errors.depth_relative.push_back(error / truth.depth);
     errors.depth_ulps.push_back(error / (unit * size));
     errors.normal_degrees.push_back(nearest_angle(truth.normals, deepest.normal));
+    if (measures) return;
     double farthest = 0;
     std::vector<std::array<double, 3>> points;
     for (const auto& c : contacts) {
@@ -117,6 +119,7 @@ void ContactErrors::add(const ContactErrors& other) {
     append(hausdorff, other.hausdorff);
     append(volume_relative, other.volume_relative);
     no_volume += other.no_volume;
+    append(distance_ulps, other.distance_ulps);
 }
 
 std::optional<double> AnswerErrors::candidate_ratio() const {
@@ -222,19 +225,42 @@ double nearest_angle(std::span<const std::array<double, 3>> normals, const std::
     return least;
 }
 
-ContactErrors contact_errors(const ContactTruths& truths, std::span<const ContactPoint> contacts,
-                             double unit) {
+ContactErrors contact_errors(const ContactTruths& truths, std::span<const ContactPoint> contacts, double unit,
+                             bool measures) {
     constexpr std::size_t part = 256;
     std::vector<ContactErrors> parts((truths.pairs.size() + part - 1) / part);
     parallel_for(parts.size(), [&](std::size_t index) {
         const auto end = std::min(truths.pairs.size(), (index + 1) * part);
         for (auto i = index * part; i < end; ++i)
-            compare(truths.truths[i], truths.sizes[i], contacts_of(contacts, truths.pairs[i]), unit,
+            compare(truths.truths[i], truths.sizes[i], contacts_of(contacts, truths.pairs[i]), unit, measures,
                     parts[index]);
     });
     ContactErrors errors;
     for (const auto& one : parts) errors.add(one);
     return errors;
+}
+
+std::vector<double> distance_errors(const Scene& scene, const Frame& frame, Positions positions,
+                                    std::span<const ContactPoint> contacts, double unit, std::size_t most) {
+    const auto count = most == 0 ? contacts.size() : std::min(most, contacts.size());
+    std::vector<Pair> pairs;
+    std::vector<double> distances;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto& contact = contacts[i * contacts.size() / count];
+        pairs.push_back(contact.pair);
+        distances.push_back(contact.depth);
+    }
+    const auto corners = pair_corners(scene, frame, positions, pairs);
+    std::vector<std::optional<double>> errors(count);
+    parallel_for(count, [&](std::size_t i) {
+        const auto& [a, b] = corners[i];
+        if (const auto exact = exact_distance(a, b))
+            errors[i] = std::abs(distances[i] - *exact) / (unit * std::max(longest_edge(a), longest_edge(b)));
+    });
+    std::vector<double> result;
+    for (const auto& error : errors)
+        if (error) result.push_back(*error);
+    return result;
 }
 
 } // namespace tandem

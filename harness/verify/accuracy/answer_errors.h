@@ -29,6 +29,9 @@ struct ContactErrors {
     /// tetrahedron, and edges through faces. A rule that omits some of them has a smaller hull.
     std::vector<double> volume_relative;
     std::uint64_t no_volume = 0; ///< answered pairs whose exact volume rounds to 0; in no sample of volume
+    /// |distance - exact| / (u L) of pairs that are apart, of rules that measure distances. Their points are
+    /// not those of the intersection, and in no sample.
+    std::vector<double> distance_ulps;
 
     void add(const ContactErrors& other);
 };
@@ -86,8 +89,14 @@ double longest_edge(const TetraCorners& corners);
 /// arc cosine is not. `normals` must not be empty; no vector needs length 1.
 double nearest_angle(std::span<const std::array<double, 3>> normals, const std::array<double, 3>& normal);
 
-/// Errors of one frame's contacts, which must be sorted by pair; `unit` is u.
-ContactErrors contact_errors(const ContactTruths& truths, std::span<const ContactPoint> contacts,
-                             double unit);
+/// Errors of one frame's contacts, which must be sorted by pair; `unit` is u. `measures`: of a rule that
+/// measures distances.
+ContactErrors contact_errors(const ContactTruths& truths, std::span<const ContactPoint> contacts, double unit,
+                             bool measures = false);
+
+/// Errors of the distances of pairs that are apart, in units of `unit` times the longer edge: of at most
+/// `most` contacts, evenly spread over their order; 0: all.
+std::vector<double> distance_errors(const Scene& scene, const Frame& frame, Positions positions,
+                                    std::span<const ContactPoint> contacts, double unit, std::size_t most);
 
 } // namespace tandem

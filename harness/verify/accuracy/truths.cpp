@@ -30,6 +30,14 @@ void check_capacity(std::size_t pairs, std::size_t frames) {
                         frames, static_cast<double>(bytes) / gib, static_cast<double>(memory) / gib));
 }
 
+/// Removes the distances of pairs that are apart: they answer that the pair does not meet.
+void erase_apart(const FrameTruth& truth, std::vector<ContactPoint>& contacts) {
+    std::erase_if(contacts, [&](const ContactPoint& contact) {
+        return contact.depth > 0 && !std::ranges::binary_search(truth.touching, contact.pair)
+               && !std::ranges::binary_search(truth.overlapping, contact.pair);
+    });
+}
+
 } // namespace
 
 Truths::Truths(const Scene& scene, const FrameRange& range, TruthAmount amount, std::size_t most_contacts,
@@ -206,13 +214,21 @@ AnswerErrors Truths::errors_of(const Geometry& geometry, const FramePosition& po
     errors.invalid_tetrahedra = truth.invalid.size();
     if (amount_ == TruthAmount::contacts && position.second == 0) errors.drift = drift_of(geometry);
     if (!answer.makes_contacts) return errors;
-    const auto contacts = answer.download_contacts();
+    auto contacts = answer.download_contacts();
+    const auto all = contacts;
+    if (answer.measures) erase_apart(truth, contacts);
     errors.decisions = decision_matrix(truth, pairs, contacts);
     if (amount_ != TruthAmount::contacts) return errors;
     const auto& exact = contact_truths_of(position, answer.walked, truth);
     errors.every_contact = exact.every;
-    errors.contacts =
-        contact_errors(exact, contacts, geometry.precision == Precision::fp64 ? 0x1p-53 : 0x1p-24);
+    const double unit = geometry.precision == Precision::fp64 ? 0x1p-53 : 0x1p-24;
+    errors.contacts = contact_errors(exact, contacts, unit, answer.measures);
+    if (answer.measures) {
+        const auto& [positions, index] = position;
+        const auto frame = range_.frame(index, positions.origin);
+        errors.contacts->distance_ulps =
+            distance_errors(scene_, *frame, positions, all, unit, most_contacts_);
+    }
     return errors;
 }
 

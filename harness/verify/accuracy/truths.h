@@ -25,6 +25,7 @@ enum class TruthAmount {
 struct FrameAnswer {
     Digest pairs, contacts;
     bool makes_contacts = false;
+    bool measures = false;                       ///< distances, also of pairs that are apart
     Walked walked = Walked::all;                 ///< pairs of other tetrahedra are in no error
     SelfPairs self = SelfPairs::off;             ///< the bodies whose own tetrahedra are paired
     std::function<std::vector<Pair>()> download; ///< sorted

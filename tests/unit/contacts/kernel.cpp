@@ -187,28 +187,34 @@ TYPED_TEST(ContactsKernel, EqualsTheReferenceAtEveryScale) {
     }
 }
 
-TYPED_TEST(ContactsKernel, EveryRuleAndDecisionEqualsTheReferenceLong) {
-    TANDEM_LONG_FORM_ONLY(sizeof(TypeParam) == 8 ? "opencl" : "host");
+/// Every rule, and combinations with decisions; another test has the default rule.
+std::vector<ContactSettings> rules_and_decisions() {
     using enum ContactRule;
     using DecisionPrecision::fp32, DecisionPrecision::fp64, DecisionPrecision::recheck;
     constexpr auto rejecting_nothing = DecisionPrecision::none;
+    std::vector<ContactSettings> cases{
+        {opposing, recheck}, {clip, recheck}, {restricted, recheck},          {consistent, recheck},
+        {sat, fp64},         {vertex, fp64},  {published, rejecting_nothing}, {clip, rejecting_nothing}};
+    for (const auto& [rule, name] : support::contact_rules())
+        if (rule != opposing) cases.push_back({rule, fp32});
+    for (const auto decision : {fp32, recheck, fp64})
+        cases.push_back({.rule = distance, .decision = decision, .margin = 0.5});
+    return cases;
+}
+
+TYPED_TEST(ContactsKernel, EveryRuleAndDecisionEqualsTheReferenceLong) {
+    TANDEM_LONG_FORM_ONLY(sizeof(TypeParam) == 8 ? "opencl" : "host");
+    using enum ContactRule;
     auto pairs = random_pairs<TypeParam>(35 * pairs_of_a_kind());
     add_close_pairs(pairs);
     add_concentric_pairs(pairs);
     add_nested_pairs(pairs);
     add_hard_pairs(pairs);
     const auto count = static_cast<std::uint32_t>(pairs.size());
-    std::vector<ContactSettings> cases{
-        {opposing, recheck}, {clip, recheck}, {restricted, recheck},          {consistent, recheck},
-        {sat, fp64},         {vertex, fp64},  {published, rejecting_nothing}, {clip, rejecting_nothing}};
-    for (const auto& [rule, name] : support::contact_rules()) // another test has the default rule
-        if (rule != opposing) cases.push_back({rule, fp32});
-    for (const auto decision : {fp32, recheck, fp64})
-        cases.push_back({.rule = distance, .decision = decision, .margin = 0.5});
-    for (const auto settings : cases) {
+    for (const auto settings : rules_and_decisions()) {
         const Expected<TypeParam> expected(pairs, settings);
         ASSERT_GT(expected.total, pairs.size() / 20);
-        if (settings.decision == rejecting_nothing)
+        if (settings.decision == DecisionPrecision::none)
             EXPECT_EQ(expected.counts.rejected, 0u);
         else
             ASSERT_GT(expected.counts.rejected, pairs.size() / 40);
@@ -219,7 +225,7 @@ TYPED_TEST(ContactsKernel, EveryRuleAndDecisionEqualsTheReferenceLong) {
             ContactKernels<TypeParam> kernels(*device, pairs, this->group_sizes(*device).back());
             // Two combinations decide before they try certificates; the others decide what certificates leave
             // undecided. One with decision=none has a single launch, too.
-            if (settings.decision != fp32
+            if (settings.decision != DecisionPrecision::fp32
                 && (settings.rule == clip || settings.rule == consistent || settings.margin > 0))
                 kernels.set_launches(ContactStage::Launches::at_once);
             const auto outcome =

@@ -118,23 +118,7 @@ public:
         if (!at_once) find_meeting(defines, settings.decision, first, pair_capacity, status);
         defines["DECIDED"] = decided_define(settings.decision, has_verdicts(settings.decision));
         defines["AT_ONCE"] = at_once ? "1" : "0";
-        const kernels::contacts::GenerateContacts generate{.found = found_,
-                                                           .first = first,
-                                                           .pair_capacity = pair_capacity,
-                                                           .owners = bodies_,
-                                                           .poses = poses_,
-                                                           .tetrahedra = tetrahedra_,
-                                                           .vertices = vertices_,
-                                                           .boundary = boundary_,
-                                                           .verdicts = verdicts_,
-                                                           .margin = margin_,
-                                                           .meeting = meeting_,
-                                                           .near = near_,
-                                                           .contact_ids = rows,
-                                                           .contact_values = values,
-                                                           .contact_capacity = capacity,
-                                                           .status = status};
-        launch(defines, generate);
+        generate(defines, first, pair_capacity, {rows, values, capacity}, status);
         device_.download(status, std::as_writable_bytes(std::span(outcome.status)));
         const auto made =
             static_cast<std::uint32_t>(std::min<std::uint64_t>(outcome.counter(STATUS_CONTACTS), capacity));
@@ -152,6 +136,27 @@ private:
         KernelOf<Arguments> kernel;
         compile_kernel(device_, kernel, defines);
         device_.launch(kernel, {16, group_size_}, arguments);
+    }
+
+    void generate(const Defines& defines, std::uint32_t first, std::uint32_t pair_capacity,
+                  const ContactRows& to, const Buffer& status) {
+        const kernels::contacts::GenerateContacts arguments{.found = found_,
+                                                            .first = first,
+                                                            .pair_capacity = pair_capacity,
+                                                            .owners = bodies_,
+                                                            .poses = poses_,
+                                                            .tetrahedra = tetrahedra_,
+                                                            .vertices = vertices_,
+                                                            .boundary = boundary_,
+                                                            .verdicts = verdicts_,
+                                                            .margin = margin_,
+                                                            .meeting = meeting_,
+                                                            .near = near_,
+                                                            .contact_ids = to.ids,
+                                                            .contact_values = to.values,
+                                                            .contact_capacity = to.capacity,
+                                                            .status = status};
+        launch(defines, arguments);
     }
 
     /// Adds the terms of the first `made` contacts to `sums`.

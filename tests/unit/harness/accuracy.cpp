@@ -89,12 +89,14 @@ Scene two_units(double x) {
 const Pair the_pair{0, 0, 1, 0};
 
 /// Errors of an answer for the two tetrahedra: `pairs` with `contacts`.
-AnswerErrors errors_of(double x, std::vector<Pair> pairs, std::vector<ContactPoint> contacts) {
+AnswerErrors errors_of(double x, std::vector<Pair> pairs, std::vector<ContactPoint> contacts,
+                       bool measures = false) {
     const auto scene = two_units(x);
     const FrameRange range(scene, 0, 0);
     Truths truths(scene, range, TruthAmount::contacts, 0);
     FrameAnswer answer;
     answer.makes_contacts = true;
+    answer.measures = measures;
     answer.download = [&] { return pairs; };
     answer.download_contacts = [&] { return contacts; };
     return truths.errors(Geometry{}, 0, answer);
@@ -221,6 +223,20 @@ TEST(Accuracy, AWrongContactHasItsKnownError) {
     EXPECT_NEAR(e.contacts->depth_ulps.at(0), (0.25 - exact) / std::sqrt(2.0) * 0x1p24, 1e-6);
     EXPECT_NEAR(e.contacts->normal_degrees.at(0), std::acos(1 / std::sqrt(3.0)) * 180 / M_PI, 1e-12);
     EXPECT_NEAR(e.contacts->point.at(0), 1 / std::sqrt(2.0), 1e-15);
+}
+
+TEST(Accuracy, DistancesOfPairsApartHaveTheirErrors) {
+    const double longer = std::sqrt(2.0);
+    const auto apart =
+        errors_of(1.5, {the_pair}, {{the_pair, 0, {1, 0, 0}, {1, 0, 0}, 0.5 + 3 * 0x1p-24 * longer}}, true);
+    EXPECT_NEAR(apart.contacts->distance_ulps.at(0), 3, 1e-6);
+    EXPECT_EQ((*apart.decisions)[0][0], 1u) << "it answers that the two are apart";
+    const auto wrong = errors_of(1.5, {the_pair}, {{the_pair, 0, {1, 0, 0}, {1, 0, 0}, -0.5}}, true);
+    EXPECT_EQ((*wrong.decisions)[0][2], 1u);
+    const auto deep = errors_of(0.75, {the_pair}, {{the_pair, 0, {1, 0, 0}, {1, 0, 0}, -0.25}}, true);
+    EXPECT_TRUE(deep.contacts->distance_ulps.empty());
+    EXPECT_EQ(deep.contacts->depth_ulps.size(), 1u);
+    EXPECT_TRUE(deep.contacts->point.empty()) << "on A, not in the intersection";
 }
 
 TEST(Accuracy, MissedFalseAndUnansweredPairsAreCounted) {
