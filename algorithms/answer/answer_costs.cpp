@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cost models of the kernels in digest.cl and sort.cl.
+// Cost models of the kernels in digest.cl, sort.cl and closest.cl.
 #include "algorithms/bodies/cost.h"
 
 namespace tandem {
@@ -25,7 +25,10 @@ std::vector<KernelCost> answer_costs(const SceneFacts& scene) {
              {},
              "keys in, pairs out"},
             {"mark_contacts", {}, {}, "nothing: contacts are not counted in advance"},
-            {"place_contacts", {}, {}, "nothing: contacts are not counted in advance"}};
+            {"place_contacts", {}, {}, "nothing: contacts are not counted in advance"},
+            {"find_closest", {}, {}, "nothing: distances before the reduction are not counted"},
+            {"keep_closest", {}, {}, "nothing: a word for each place of the table"},
+            {"count_closest", {}, {}, "nothing: two words"}};
 }
 
 } // namespace tandem

@@ -15,7 +15,7 @@ constexpr std::size_t piece_bytes = 1 << 20;
 } // namespace
 
 /// The header before the first line. It comes with the lines, because pipes are written directly.
-std::string DumpFile::begun() { return std::string(std::exchange(header_, {})); }
+std::string DumpFile::begun() { return std::exchange(header_, {}); }
 
 void DumpFile::write_pieces(std::string& text, std::size_t least) {
     if (text.size() < least) return;
@@ -33,24 +33,17 @@ void DumpFile::pairs(std::size_t frame, std::span<const Pair> pairs) {
     write_pieces(text, 1);
 }
 
-void DumpFile::contacts(std::size_t frame, std::span<const ContactPoint> contacts) {
+void DumpFile::rows(std::size_t frame, std::span<const ContactPoint> contacts,
+                    std::span<const RowColumn> columns) {
     auto text = begun();
     for (const auto& c : contacts) {
-        fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{},{},{},{}\n", frame,
-                       c.pair.body_a, c.pair.tet_a, c.pair.body_b, c.pair.tet_b, c.point[0], c.point[1],
-                       c.point[2], c.normal[0], c.normal[1], c.normal[2], c.depth);
-        write_pieces(text, piece_bytes);
-    }
-    write_pieces(text, 1);
-}
-
-void DumpFile::distances(std::size_t frame, std::span<const ContactPoint> contacts) {
-    auto text = begun();
-    for (const auto& c : contacts) {
-        const auto b = other_point(c);
-        fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", frame,
-                       c.pair.body_a, c.pair.tet_a, c.pair.body_b, c.pair.tet_b, c.point[0], c.point[1],
-                       c.point[2], b[0], b[1], b[2], c.normal[0], c.normal[1], c.normal[2], c.depth);
+        fmt::format_to(std::back_inserter(text), "{},{},{},{},{}", frame, c.pair.body_a, c.pair.tet_a,
+                       c.pair.body_b, c.pair.tet_b);
+        std::array<double, 3> room;
+        for (const auto& column : columns)
+            for (const double number : column.values(c, room))
+                fmt::format_to(std::back_inserter(text), ",{}", number);
+        text += '\n';
         write_pieces(text, piece_bytes);
     }
     write_pieces(text, 1);

@@ -10,12 +10,13 @@ namespace tandem {
 
 Dumps::Dumps(const RunOptions& options, bool writes)
     : pairs_(writes ? options.dump_pairs : std::string(), pairs_header),
-      contacts_(writes ? options.dump_contacts : std::string(), contacts_header),
-      distances_(writes ? options.dump_distances : std::string(), distances_header),
+      contacts_(writes ? options.dump_contacts : std::string(), row_header(ContactRule::opposing)),
+      distances_(writes ? options.dump_distances : std::string(), row_header(ContactRule::distance)),
       trace_(writes ? options.trace : std::string()) {}
 
 void Dumps::dump(const Cell& cell, const Task& task) {
     const auto session = prepare_session(cell, task.scene);
+    const auto columns = row_columns(session->settings()[parameters::contact_rule]);
     for (std::size_t i = 0; i < task.range.size(); ++i) {
         if (decided(cell.team, Interrupt::asked())) throw Interrupted();
         const auto state = task.range.state(i, session->settings()[parameters::motion]);
@@ -23,12 +24,10 @@ void Dumps::dump(const Cell& cell, const Task& task) {
         // Collective: all ranks download; only rank 0 writes.
         if (!task.options.dump_pairs.empty())
             if (const auto found = result.download(); pairs_) pairs_.pairs(task.range.first() + i, found);
-        if (!task.options.dump_contacts.empty())
-            if (const auto found = result.download_contacts(); contacts_)
-                contacts_.contacts(task.range.first() + i, found);
-        if (!task.options.dump_distances.empty())
-            if (const auto found = result.download_contacts(); distances_)
-                distances_.distances(task.range.first() + i, found);
+        auto& rows = task.options.dump_distances.empty() ? contacts_ : distances_;
+        if (!task.options.dump_contacts.empty() || !task.options.dump_distances.empty())
+            if (const auto found = result.download_contacts(); rows)
+                rows.rows(task.range.first() + i, found, columns);
     }
     pairs_.finish();
     distances_.finish();

@@ -175,6 +175,29 @@ class Answers(Case):
             all(a < b for _, a, _, b, _ in self.dump(pairs, "frame,body_a,tet_a,body_b,tet_b")[1])
         )
 
+    def test_dumps_of_distances(self):
+        header = "frame,body_a,tet_a,body_b,tet_b,ax,ay,az,bx,by,bz,nx,ny,nz,distance"
+        found = {}
+        for output in ("pairs", "distances"):
+            path, out = self.work / f"{output}.d", self.work / f"{output}.jsonl"
+            self.output(
+                f"run plates --frames 20 --repeat 1 --algorithm tiled --set margin=0.01 --set output={output} "
+                f"--set contact_rule=distance --dump-distances {path} --out {out}"
+            )
+            rows, ids = self.dump(path, header)
+            self.assertEqual(len(rows), self.records(out)[0]["work"]["contacts"][0])
+            self.assertEqual(len(set(ids)), len(ids), "one a pair")
+            for row in rows:
+                a, b, n = ([float(x) for x in row[first : first + 3]] for first in (5, 8, 11))
+                self.assertLess(float(row[14]), 0.01001)
+                for at, other, along in zip(a, b, n):
+                    self.assertAlmostEqual(at + along * float(row[14]), other, 12)
+            found[output] = {
+                (row[1], row[3]): min(float(r[14]) for r in rows if (r[1], r[3]) == (row[1], row[3]))
+                for row in rows
+            }
+        self.assertEqual(found["pairs"], found["distances"], "the least of each pair of bodies")
+
     def test_tiny_capacities_retry(self):
         out = self.work / "tiny.jsonl"
         status, text, _ = tandem(

@@ -100,7 +100,7 @@ class BadInput(Case):
         self.assertEqual(tandem("devices", "--require", "host,opencl,opencl:0")[0], 0)
 
     def test_unwritable_output_is_detected_first(self):
-        for option in ("--out", "--dump-pairs", "--dump-contacts"):
+        for option in ("--out", "--dump-pairs", "--dump-contacts", "--dump-distances"):
             out = self.bad(
                 "cannot be written", "run", "plates", "--frames", "0", option, self.work / "no/such/file"
             )

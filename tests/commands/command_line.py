@@ -59,6 +59,7 @@ CONTRADICTIONS = """
 --profile cannot be combined with --truth contacts  | {run} --profile 1 --truth contacts
 --dry-run cannot be combined with --dump-pairs      | {run} --dry-run --dump-pairs x
 --dry-run cannot be combined with --dump-contacts   | {run} --dry-run --dump-contacts x
+--dry-run cannot be combined with --dump-distances  | {run} --dry-run --dump-distances x
 --pose requires --mesh                              | {run} --pose '{pose}'
 --pose requires --mesh                              | check --pose '{pose}'
 --pose requires --mesh                              | accuracy --pose '{pose}'

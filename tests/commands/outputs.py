@@ -44,7 +44,7 @@ class Outputs(Case):
 
     def test_outputs_of_run(self):
         mesh = ("run", "--mesh", self.mesh, *ONE)
-        for option in ("--dump-pairs", "--dump-contacts", "--trace", "--out"):
+        for option in ("--dump-pairs", "--dump-contacts", "--dump-distances", "--trace", "--out"):
             self.kept(self.mesh, "is an input", *mesh, option, lambda name: name)
             if option != "--out":
                 self.kept(self.records, "is a file of records", *mesh, option, lambda name: name)

@@ -20,7 +20,16 @@ from .cells import RecordedCells, read_cells
 from .pooling import pooled
 
 SIDES = ("old", "new")
-OWN_OPTIONS = ("--out", "--resume", "--dry-run", "--dump-pairs", "--dump-contacts", "--trace", "--profile")
+OWN_OPTIONS = (
+    "--out",
+    "--resume",
+    "--dry-run",
+    "--dump-pairs",
+    "--dump-contacts",
+    "--dump-distances",
+    "--trace",
+    "--profile",
+)
 ROOT = pathlib.Path(__file__).parents[3]  # of the source tree, if the package is in one
 
 
