@@ -30,7 +30,7 @@ mpq_class between_edges(const Integers& p, const Integers& e, const Integers& q,
     mpq_class s = spread > 0 ? within_unit(quotient(er * ff - fr * ef, spread)) : mpq_class(0);
     const mpq_class foot = ff > 0 ? mpq_class((s * ef - fr) / ff) : mpq_class(0);
     const auto t = within_unit(foot);
-    if (t != foot && ee > 0) s = within_unit((er + t * ef) / ee);
+    if ((t != foot || spread == 0) && ee > 0) s = within_unit((er + t * ef) / ee);
     Rationals w;
     for (unsigned i = 0; i < 3; ++i) w[i] = r[i] + t * f[i] - s * e[i];
     return dot(w, w);

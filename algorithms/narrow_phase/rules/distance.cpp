@@ -91,19 +91,19 @@ private:
         const auto ee = with_.dot(e, e), ff = with_.dot(f, f), ef = with_.dot(e, f), er = with_.dot(e, r),
                    fr = with_.dot(f, r);
         const auto spread = minor(ee, ef, ef, ff);
-        auto s = is_certain(spread.value, ee.value * ff.value)
-                     ? clamped(with_.quotient(minor(er, ef, fr, ff), spread))
-                     : Value{Real(0.5)};
+        const bool is_spread = is_certain(spread.value, ee.value * ff.value);
+        auto s = is_spread ? clamped(with_.quotient(minor(er, ef, fr, ff), spread)) : Value{Real(0.5)};
         const auto foot = share(sum(-fr, s, ef), ff), t = clamped(foot);
-        if (t.value != foot.value || t.rest != foot.rest) s = clamped(share(sum(er, t, ef), ee));
+        if (!is_spread || t.value != foot.value || t.rest != foot.rest)
+            s = clamped(share(sum(er, t, ef), ee));
         const auto w = moved(moved(r, t, f), -s, e);
         const auto square = with_.dot(w, w);
         if (!is_closer(square)) return;
         const bool inside_e = is_inner(s), inside_f = is_inner(t);
         auto normal = values(w);
         const auto product = with_.cross(e, f);
-        const bool is_spread = is_certain(with_.dot(product, product).value, ee.value * ff.value);
-        if (inside_e && inside_f && is_spread) {
+        const bool has_product = is_certain(with_.dot(product, product).value, ee.value * ff.value);
+        if (inside_e && inside_f && has_product) {
             normal = values(product);
             if (dot(normal, values(w)) < 0) normal = normal * Real(-1);
         } else if (inside_e) {

@@ -26,9 +26,10 @@ enum class Family {
     above_corner,
     small,
     far,
-    nested
+    nested,
+    flat
 };
-constexpr int families = 9;
+constexpr int families = 10;
 
 /// Points above a plane of height `low` that a direction may tilt.
 FourCorners random_solid(Random& random) {
@@ -94,6 +95,11 @@ std::pair<FourCorners, FourCorners> make(Random& random, Family family) {
         break;
     case Family::nested:
         a = {Vector(-9, -9, -9), Vector(9, -9, -9), Vector(0, 9, -9), Vector(0, 0, 9)};
+        break;
+    case Family::flat: // to a face, an edge or a corner
+        b[3] = (b[0] + b[1] + b[2]) / 3;
+        for (unsigned i = 0; i < random.next() % 3; ++i) b[2 - i] = b[3 - i];
+        part(a, b, random.direction(), gap);
         break;
     case Family::any:
     case Family::far:
@@ -254,7 +260,7 @@ unsigned original(unsigned bits, const Order& order) {
 TYPED_TEST(ContactsDistance, OrderOfCornersAndTetrahedraChangesNamesOnly) {
     constexpr double margin = 1;
     std::size_t seen = 0;
-    for (int i = 0; i < families; ++i) {
+    for (int i = 0; i < families - 1; ++i) { // equal corners of the last have no order
         Random random(77);
         Order order_a{0, 1, 2, 3}, order_b{3, 1, 0, 2};
         for (int k = 0; k < 240; ++k) {
