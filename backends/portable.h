@@ -82,7 +82,8 @@
 #define LOCAL __local
 #define LOCAL_ARRAY(type, name, count) __local type name[count]
 #define DEVICE static inline
-#if GROUP_SIZE == 1 // nothing to wait for, and PoCL 3.1 aborts on some barriers in loops at this size
+#define OUT_OF_LINE DEVICE // see the host's
+#if GROUP_SIZE == 1        // nothing to wait for, and PoCL 3.1 aborts on some barriers in loops at this size
 #define BARRIER
 #define BARRIER_GLOBAL
 #else
@@ -128,6 +129,7 @@
 #define LOCAL
 #define LOCAL_ARRAY(type, name, count) __shared__ type name[count]
 #define DEVICE static __device__ __forceinline__
+#define OUT_OF_LINE DEVICE
 #define BARRIER __syncthreads()
 #define BARRIER_GLOBAL __syncthreads()
 #define LOCAL_ID ((uint)threadIdx.x)
@@ -179,6 +181,9 @@ typedef unsigned long ulong; // 64 bits on Linux
 #else
 #define DEVICE static inline
 #endif
+// Long text for few pairs, which would cost registers of the text around it: the host has one kernel for all
+// contact rules.
+#define OUT_OF_LINE [[gnu::noinline]] static
 #define BARRIER ((void)0)
 #define BARRIER_GLOBAL ((void)0)
 #define LOCAL_ID 0u

@@ -91,7 +91,7 @@ function(tandem_kernels target)
   add_custom_target(${target}-arguments DEPENDS ${argument_headers})
   add_dependencies(${target} ${target}-arguments)
   # g++ 12 takes the undefined operands of AVX-512 intrinsics for uninitialised variables (GCC bug 105593).
-  set(options -Wno-psabi -Wno-maybe-uninitialized -Wno-unused-function -Wno-unused-variable -Wno-unused-parameter -Wno-unknown-pragmas -Wno-type-limits)
+  set(options -Wno-psabi -Wno-maybe-uninitialized -Wno-uninitialized -Wno-unused-function -Wno-unused-variable -Wno-unused-parameter -Wno-unknown-pragmas -Wno-type-limits)
   if(TANDEM_SANITIZE)
     # With -fsanitize=bounds, g++ 12 reads uninitialised temporaries in certainty.clh: it reports them, and the decisions
     # differ from those of all other builds. Addresses are still checked.

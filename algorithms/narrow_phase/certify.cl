@@ -118,10 +118,12 @@ KERNEL void certify_pairs(GLOBAL const uint* found, uint first, uint pair_capaci
                               OPEN_PAIR(one - first, (uint)AT(edge, element)));
                 APPEND_IF(AT(state, element) == PAIR_MEETING, group + LIST_MEETING,
                           waiting[LIST_MEETING * FOUND_CAPACITY + entry] = one);
-                if (WANTS_NEAR)
+            }
+            if (WANTS_NEAR) FOR_PACK(element) {
+                    const uint one = (uint)AT(index, element);
                     APPEND_IF(AT(state, element) == PAIR_NEAR, group + LISTS - 1,
                               waiting[(LISTS - 1) * FOUND_CAPACITY + entry] = one);
-            }
+                }
         }
         hand_out(waiting, group, open, meeting, near, status);
         keep_rest(end, asked, group);

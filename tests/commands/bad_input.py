@@ -101,8 +101,16 @@ class BadInput(Case):
 
     def test_unwritable_output_is_detected_first(self):
         for option in ("--out", "--dump-pairs", "--dump-contacts", "--dump-distances"):
+            rule = ("--set", "contact_rule=distance") if option == "--dump-distances" else ()
             out = self.bad(
-                "cannot be written", "run", "plates", "--frames", "0", option, self.work / "no/such/file"
+                "cannot be written",
+                "run",
+                "plates",
+                "--frames",
+                "0",
+                *rule,
+                option,
+                self.work / "no/such/file",
             )
             self.assertNotIn("traverse", out)
 

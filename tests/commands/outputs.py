@@ -45,9 +45,10 @@ class Outputs(Case):
     def test_outputs_of_run(self):
         mesh = ("run", "--mesh", self.mesh, *ONE)
         for option in ("--dump-pairs", "--dump-contacts", "--dump-distances", "--trace", "--out"):
-            self.kept(self.mesh, "is an input", *mesh, option, lambda name: name)
+            given = (*mesh, *(("--set", "contact_rule=distance") if option == "--dump-distances" else ()))
+            self.kept(self.mesh, "is an input", *given, option, lambda name: name)
             if option != "--out":
-                self.kept(self.records, "is a file of records", *mesh, option, lambda name: name)
+                self.kept(self.records, "is a file of records", *given, option, lambda name: name)
         scene = self.folder / "scene.json"
         scene.write_text(
             json.dumps({"frames": 1, "meshes": {"a": {"file": "mesh.msh"}}, "bodies": [{"mesh": "a"}]}) + "\n"
