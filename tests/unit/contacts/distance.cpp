@@ -68,6 +68,12 @@ void put_above(Random& random, Family family, double gap, FourCorners& a, FourCo
         b[static_cast<std::size_t>(i)] = b[0] + Vector(sideways(), sideways(), random.uniform(0.5, 1));
 }
 
+/// To a face, an edge or a corner.
+void flatten(Random& random, FourCorners& solid) {
+    solid[3] = (solid[0] + solid[1] + solid[2]) / 3;
+    for (auto i = random.next() % 3; i > 0; --i) solid[i] = solid[3];
+}
+
 /// A pair, turned and moved at random.
 std::pair<FourCorners, FourCorners> make(Random& random, Family family) {
     auto a = random_solid(random), b = random_solid(random);
@@ -96,9 +102,8 @@ std::pair<FourCorners, FourCorners> make(Random& random, Family family) {
     case Family::nested:
         a = {Vector(-9, -9, -9), Vector(9, -9, -9), Vector(0, 9, -9), Vector(0, 0, 9)};
         break;
-    case Family::flat: // to a face, an edge or a corner
-        b[3] = (b[0] + b[1] + b[2]) / 3;
-        for (unsigned i = 0; i < random.next() % 3; ++i) b[2 - i] = b[3 - i];
+    case Family::flat:
+        flatten(random, b);
         part(a, b, random.direction(), gap);
         break;
     case Family::any:
