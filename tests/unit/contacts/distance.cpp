@@ -68,6 +68,14 @@ void put_above(Random& random, Family family, double gap, FourCorners& a, FourCo
         b[static_cast<std::size_t>(i)] = b[0] + Vector(sideways(), sideways(), random.uniform(0.5, 1));
 }
 
+/// Lays a face of each in a plane; b is above a.
+void face_each_other(FourCorners& a, FourCorners& b, double gap) {
+    for (auto* solid : {&a, &b})
+        for (auto& p : *solid) p.z() = &p == solid->data() ? std::abs(p.z()) + 0.1 : 0;
+    a[0].z() *= -1;
+    for (auto& p : b) p.z() += gap;
+}
+
 /// To a face, an edge or a corner.
 void flatten(Random& random, FourCorners& solid) {
     solid[3] = (solid[0] + solid[1] + solid[2]) / 3;
@@ -85,10 +93,7 @@ std::pair<FourCorners, FourCorners> make(Random& random, Family family) {
         part(a, b, random.direction(), gap);
         break;
     case Family::parallel_faces:
-        for (auto* solid : {&a, &b})
-            for (auto& p : *solid) p.z() = &p == solid->data() ? std::abs(p.z()) + 0.1 : 0;
-        a[0].z() *= -1;
-        for (auto& p : b) p.z() += gap;
+        face_each_other(a, b, gap);
         break;
     case Family::crossing_edges:
     case Family::above_edge:
