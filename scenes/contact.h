@@ -20,13 +20,15 @@ struct Pair {
 
 /// A contact between a pair: point and normal (out of body a) in world coordinates, depth < 0 inside. Of a
 /// rule that measures distances: the point of a that is closest to b, the normal towards b's, and the
-/// distance.
+/// distance. Of rule pressure: the centroid of the polygon of equal pressure, the normal into body a, the
+/// area, and the pressure.
 struct ContactPoint {
     Pair pair;                     ///< the two tetrahedra
     std::uint32_t feature = 0;     ///< number defined by algorithms/narrow_phase
     std::array<double, 3> point{}, ///< x, y, z, in the scene's unit of length
         normal{};                  ///< x, y, z; of length 1, within rounding
-    double depth = 0;              ///< in the scene's unit of length
+    double depth = 0;              ///< in the scene's unit of length; an area in its square
+    double pressure = 0;           ///< at the centroid; 0 with other rules
 };
 
 /// The point of b, where the contact rule measures distances.

@@ -22,6 +22,9 @@ void add(Digester& digester, const Mesh& mesh) {
         digester.add(std::uint64_t{list->size()});
         for (const auto number : *list) digester.add(std::uint64_t{number});
     }
+    if (mesh.pressures.empty()) return;
+    digester.add(std::uint64_t{mesh.pressures.size()});
+    for (const double pressure : mesh.pressures) digester.add(pressure);
 }
 
 void add(Digester& digester, const Frame& frame) {

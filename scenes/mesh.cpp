@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "scenes/faces.h"
+#include "scenes/pressure_field.h"
 #include "scenes/weld.h"
 
 #include <algorithm>
@@ -152,6 +153,7 @@ void complete_mesh(Mesh& mesh, const std::string& source, const MeshReading& rea
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
         for (const auto vertex : mesh.tetrahedra[t])
             if (vertex >= mesh.vertices.size()) refuse_vertex(mesh, source, t, vertex);
+    check_pressures(mesh, source);
     count_flawed(mesh);
     connect(mesh, source, reading);
 }
@@ -171,6 +173,8 @@ std::string findings_text(const Mesh& mesh, std::string_view weld) {
     add(found.ghosts, "ghost cells are left out");
     add(found.reduced, "tetrahedra of higher order are read by their corners");
     add(found.other_cells, "volume cells that are not tetrahedra are left out");
+    if (const double most = most_pressure_on_boundary(mesh); most > 0)
+        parts.push_back(fmt::format("the pressure is not 0 on the whole boundary, but up to {}", most));
     return fmt::format("{}", fmt::join(parts, "; "));
 }
 

@@ -37,6 +37,9 @@ struct Mesh {
     std::vector<std::uint32_t> merged{}; ///< duplicates that take no part, ascending
     /// By vertex, the first of the vertices that are one for the topology; empty: each is one of its own.
     std::vector<std::uint32_t> welded{};
+    /// The pressure at each vertex, in the scene's unit of pressure, finite and not negative; empty: no
+    /// field.
+    std::vector<double> pressures{};
     MeshFindings findings{};
     MeshReading reading{}; ///< how complete_mesh connected it
 };

@@ -47,6 +47,7 @@ void read_values(std::span<const std::byte> bytes, std::size_t index, ContactPoi
         contact.normal[i] = static_cast<double>(row[3 + i]);
     }
     contact.depth = static_cast<double>(row[6]);
+    contact.pressure = static_cast<double>(row[7]);
 }
 
 /// `pair_at` returns the pair of a row.
@@ -57,7 +58,7 @@ Digest digest_of_contacts(const PairAt& pair_at, std::span<const ContactIds> ids
     for (std::size_t i = 0; i < ids.size(); ++i) {
         const Pair pair = pair_at(ids[i][0]);
         const auto v = values_of<Real>(values, i);
-        const Contact<Real> contact{ids[i][1], {v[0], v[1], v[2]}, {v[3], v[4], v[5]}, v[6]};
+        const Contact<Real> contact{ids[i][1], {v[0], v[1], v[2]}, {v[3], v[4], v[5]}, v[6], v[7]};
         const auto [a, b] = contact_terms(pair.body_a, pair.tet_a, pair.body_b, pair.tet_b, contact);
         sum.a += a;
         sum.b += b;

@@ -27,7 +27,7 @@ std::pair<std::uint64_t, std::uint64_t> contact_terms(std::uint32_t body_a, std:
     term = scrambled(term + contact.feature);
     const auto& p = contact.point;
     const auto& n = contact.normal;
-    const std::array<Real, 8> values{p[0], p[1], p[2], n[0], n[1], n[2], contact.depth, 0};
+    const std::array<Real, 8> values{p[0], p[1], p[2], n[0], n[1], n[2], contact.depth, contact.pressure};
     if constexpr (sizeof(Real) == 8)
         for (const Real value : values) term = scrambled(term + std::bit_cast<std::uint64_t>(value));
     else

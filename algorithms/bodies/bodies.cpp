@@ -31,6 +31,8 @@ Bodies::Bodies(Device& device, const Scene& scene, const Geometry& geometry, Sha
     for (const auto& mesh : scene.meshes) {
         meshes_.push_back(ordered(mesh, order));
         if (geometry.placement == Placement::exact) mesh_reaches_.push_back(reach_of(mesh.vertices));
+        if (geometry.pressures && mesh.pressures.empty())
+            no_pressures_.resize(std::max(no_pressures_.size(), mesh.vertices.size()), -1);
     }
     lay_out();
     lay_out_slots();
@@ -139,7 +141,7 @@ std::vector<std::byte> Bodies::shared_vertices() const {
         if (geometry_.motion == Motion::linear)
             pack_vertices_with_distances(bytes, geometry_, meshes_[mesh], vertices, shift_in(scene_, mesh));
         else
-            pack_vertices(bytes, geometry_, meshes_[mesh], vertices);
+            pack_vertices(bytes, geometry_, meshes_[mesh], vertices, pressures(mesh));
     }
     return bytes;
 }
@@ -179,6 +181,12 @@ void Bodies::upload_static() {
     const auto shared = shared_vertices();
     device_.upload(vertices_, shared);
     if (next_vertices_) device_.upload(next_vertices_, shared);
+}
+
+std::span<const double> Bodies::pressures(std::size_t mesh) const {
+    if (!geometry_.pressures) return {};
+    const auto& own = scene_.meshes[mesh].pressures;
+    return own.empty() ? std::span(no_pressures_).first(scene_.meshes[mesh].vertices.size()) : own;
 }
 
 std::size_t Bodies::bytes() const {
@@ -285,7 +293,8 @@ void Bodies::upload_deformed(const Frame& frame, const Buffer& vertices, bool wa
             bytes.reserve((run.end - run.first) * row);
             for (const auto body : run.bodies) {
                 bytes.resize((rows_[body].vertices - run.first) * row);
-                pack_vertices(bytes, geometry_, mesh(body), frame.deformed[body]);
+                pack_vertices(bytes, geometry_, mesh(body), frame.deformed[body],
+                              pressures(scene_.bodies[body].mesh));
             }
         }
         if (bytes.empty()) continue;

@@ -85,6 +85,10 @@ public:
     std::span<const std::byte> packed_rows() const { return bytes_of(rows_); }
     std::vector<std::byte> packed_poses(const Frame& frame) const { return packed_poses(frame, {}); }
 
+    /// The pressure of each vertex of a mesh, in its input order: of a mesh without a field -1, which no
+    /// pressure of a field equals. Empty unless vertices carry pressures.
+    std::span<const double> pressures(std::size_t mesh) const;
+
     const Buffer& row_table() const { return row_table_; } ///< BODY_WORDS words a body
     /// The table that members_of (pairs.clh) reads: rows of blocks of slots, or row_table().
     const Buffer& owners() const { return pair_layout_ == PairLayout::slots ? blocks_ : row_table_; }
@@ -121,6 +125,7 @@ private:
     /// By mesh: tetrahedron -> position, or OrderedMesh::unused; computed on first use.
     mutable std::vector<std::vector<std::uint32_t>> positions_;
     std::vector<double> mesh_reaches_; ///< by mesh: reach_of; with placement=exact only
+    std::vector<double> no_pressures_; ///< for the largest mesh without a field
     std::vector<BodyRow> rows_;
     PairLayout pair_layout_;
     std::vector<std::uint32_t> slot_order_;

@@ -30,10 +30,15 @@ Real distance_of(const std::array<Real, 4>& row, const Eigen::Vector3d& shift) {
                              * upwards);
 }
 
-/// `shift`: null for rows without distances.
+/// What the fourth reals of rows are: distances if `shift` is not null, else `given` numbers, else 0.
+struct Fourth {
+    const Eigen::Vector3d* shift = nullptr;
+    std::span<const double> given{};
+};
+
 template<class Real>
 void write_rows(std::byte* target, const OrderedMesh& mesh, const std::vector<Eigen::Vector3d>& vertices,
-                const Eigen::Vector3d* shift) {
+                const Fourth& fourth) {
     // Reads in the order of memory, because a new frame's vertices may not be in a cache; the written rows
     // fit into one.
     for (std::size_t i = 0; i < vertices.size(); ++i) {
@@ -41,42 +46,43 @@ void write_rows(std::byte* target, const OrderedMesh& mesh, const std::vector<Ei
         const auto& p = vertices[i];
         std::array<Real, 4> row{static_cast<Real>(p.x()), static_cast<Real>(p.y()), static_cast<Real>(p.z()),
                                 0};
-        if (shift != nullptr) row[3] = distance_of(row, *shift);
+        if (fourth.shift != nullptr) row[3] = distance_of(row, *fourth.shift);
+        if (!fourth.given.empty()) row[3] = static_cast<Real>(fourth.given[i]);
         std::memcpy(target + mesh.numbers[i] * sizeof(row), row.data(), sizeof(row));
     }
 }
 
 void write_rows_in(const Geometry& geometry, std::byte* out, const OrderedMesh& mesh,
-                   const std::vector<Eigen::Vector3d>& vertices, const Eigen::Vector3d* shift) {
+                   const std::vector<Eigen::Vector3d>& vertices, const Fourth& fourth) {
     if (geometry.precision == Precision::fp64)
-        write_rows<double>(out, mesh, vertices, shift);
+        write_rows<double>(out, mesh, vertices, fourth);
     else
-        write_rows<float>(out, mesh, vertices, shift);
+        write_rows<float>(out, mesh, vertices, fourth);
 }
 
 void append_vertices(std::vector<std::byte>& out, const Geometry& geometry, const OrderedMesh& mesh,
-                     const std::vector<Eigen::Vector3d>& vertices, const Eigen::Vector3d* shift) {
+                     const std::vector<Eigen::Vector3d>& vertices, const Fourth& fourth) {
     const auto offset = out.size();
     out.resize(offset + mesh.vertices.size() * 4 * real_bytes(geometry));
-    write_rows_in(geometry, out.data() + offset, mesh, vertices, shift);
+    write_rows_in(geometry, out.data() + offset, mesh, vertices, fourth);
 }
 
 } // namespace
 
 void write_vertices(std::byte* out, const Geometry& geometry, const OrderedMesh& mesh,
                     const std::vector<Eigen::Vector3d>& vertices) {
-    write_rows_in(geometry, out, mesh, vertices, nullptr);
+    write_rows_in(geometry, out, mesh, vertices, {});
 }
 
 void pack_vertices(std::vector<std::byte>& out, const Geometry& geometry, const OrderedMesh& mesh,
-                   const std::vector<Eigen::Vector3d>& vertices) {
-    append_vertices(out, geometry, mesh, vertices, nullptr);
+                   const std::vector<Eigen::Vector3d>& vertices, std::span<const double> fourth) {
+    append_vertices(out, geometry, mesh, vertices, {.given = fourth});
 }
 
 void pack_vertices_with_distances(std::vector<std::byte>& out, const Geometry& geometry,
                                   const OrderedMesh& mesh, const std::vector<Eigen::Vector3d>& vertices,
                                   const Eigen::Vector3d& shift) {
-    append_vertices(out, geometry, mesh, vertices, &shift);
+    append_vertices(out, geometry, mesh, vertices, {.shift = &shift});
 }
 
 /// The order of operations affects the bits of answers; the reference has the same order
@@ -94,16 +100,18 @@ std::array<double, 12> pose_rows(const Pose& pose) {
             2 * (x * z - y * w),     2 * (y * z + x * w),     1 - 2 * (x * x + y * y), t.z()};
 }
 
+void pack_reals(std::vector<std::byte>& out, const Geometry& geometry, std::span<const double> numbers) {
+    if (geometry.precision == Precision::fp64)
+        append<double>(out, numbers);
+    else
+        append<float>(out, numbers);
+}
+
 void pack_pose(std::vector<std::byte>& out, const Geometry& geometry, const Pose& pose,
                const std::array<double, 3>& drift, double arc) {
-    const auto put = [&](const auto& numbers) {
-        if (geometry.precision == Precision::fp64)
-            append<double>(out, numbers);
-        else
-            append<float>(out, numbers);
-    };
-    put(pose_rows(pose));
-    if (pose_reals(geometry) == 16) put(std::array<double, 4>{drift[0], drift[1], drift[2], arc});
+    pack_reals(out, geometry, pose_rows(pose));
+    if (pose_reals(geometry) == 16)
+        pack_reals(out, geometry, std::array<double, 4>{drift[0], drift[1], drift[2], arc});
 }
 
 } // namespace tandem

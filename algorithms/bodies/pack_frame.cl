@@ -202,11 +202,13 @@ KERNEL void pack_unit_poses(GLOBAL real* poses, GLOBAL const double* rows, uint 
 
 // A work-item packs one vertex of one deformable body, whose rows begin with `first`. `indices`: from
 // `indices_first` on, the row of each vertex relative to `first`, or NO_INDEX if no tetrahedron uses it.
+// `pressures`: one for each of `indices`; not read unless `has_pressures`.
 #define NO_INDEX 0xffffffffu
 
 KERNEL void pack_vertices(GLOBAL real* vertices, uint first, GLOBAL const uint* indices, uint indices_first,
                           GLOBAL const void* rows, uint kind, uint count, double limit, double origin_x,
-                          double origin_y, double origin_z, GLOBAL uint* status) {
+                          double origin_y, double origin_z, GLOBAL const real* pressures, uint has_pressures,
+                          GLOBAL uint* status) {
     for (ulong vertex = GLOBAL_ID; vertex < count; vertex += GLOBAL_COUNT) {
         double point[3];
         for (uint i = 0; i < 3u; ++i) point[i] = number_at(rows, kind, vertex * 3 + i);
@@ -217,6 +219,7 @@ KERNEL void pack_vertices(GLOBAL real* vertices, uint first, GLOBAL const uint* 
         const uint index = indices[indices_first + vertex];
         if (index != NO_INDEX)
             ((GLOBAL RealRow*)vertices)[(ulong)first + index] =
-                row_of(point[0] - origin_x, point[1] - origin_y, point[2] - origin_z, 0);
+                row_of(point[0] - origin_x, point[1] - origin_y, point[2] - origin_z,
+                       has_pressures != 0u ? pressures[indices_first + vertex] : (real)0);
     }
 }

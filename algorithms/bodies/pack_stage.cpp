@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/bodies/pack_stage.h"
 
+#include "algorithms/bodies/pack.h"
 #include "algorithms/bodies/range.h"
 #include "algorithms/kernels/sources.h"
 #include "backends/upload.h"
@@ -46,12 +47,20 @@ PackStage::PackStage(const Bodies& bodies, LaunchShape shape)
     compile_kernel(device, vertices_, defines);
     if (bodies.geometry().motion == Motion::linear) compile_kernel(device, arcs_, defines);
     std::vector<std::uint32_t> indices;
+    std::vector<double> pressures;
     for (std::uint32_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
         first_indices_.push_back(static_cast<std::uint32_t>(indices.size()));
         const auto deforms = [&](const Body& body) { return body.deformable && body.mesh == mesh; };
         if (std::ranges::none_of(scene.bodies, deforms)) continue;
         const auto& numbers = bodies.ordered_mesh(mesh).numbers;
         indices.insert(indices.end(), numbers.begin(), numbers.end());
+        const auto own = bodies.pressures(mesh);
+        pressures.insert(pressures.end(), own.begin(), own.end());
+    }
+    if (!pressures.empty()) {
+        std::vector<std::byte> bytes;
+        pack_reals(bytes, bodies.geometry(), pressures);
+        pressures_ = uploaded(device, bytes, "pressures of vertices");
     }
     indices_ = uploaded(device, bytes_of(indices), "row indices of vertices");
     if (scene.shifts.empty()) return;
@@ -112,6 +121,8 @@ void PackStage::pack_vertices(std::size_t body, const DeviceRows& rows, const Bu
                                                       .origin_x = origin.x(),
                                                       .origin_y = origin.y(),
                                                       .origin_z = origin.z(),
+                                                      .pressures = pressures_ ? pressures_ : vertices,
+                                                      .has_pressures = pressures_ ? 1u : 0u,
                                                       .status = status};
     bodies_.device().launch(vertices_, grid_over(count), arguments);
 }

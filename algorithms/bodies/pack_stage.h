@@ -37,8 +37,9 @@ private:
     KernelOf<kernels::pack_frame::PackPoses> poses_;
     KernelOf<kernels::pack_frame::PackVertices> vertices_;
     KernelOf<kernels::pack_frame::PackArcs> arcs_; ///< null without motion
-    Buffer shifts_;                            ///< Scene::shifts by body; empty unless the scene is centred
-    Buffer indices_;                           ///< OrderedMesh::numbers of the meshes of deformable bodies
+    Buffer shifts_;    ///< Scene::shifts by body; empty unless the scene is centred
+    Buffer indices_;   ///< OrderedMesh::numbers of the meshes of deformable bodies
+    Buffer pressures_; ///< of the vertices of indices_; empty unless vertices carry them
     std::vector<std::uint32_t> first_indices_; ///< by mesh, in indices_
 };
 

@@ -58,6 +58,7 @@ Geometry geometry_of(const Settings& settings) {
     geometry.origin = settings[parameters::origin];
     geometry.motion = settings[parameters::motion];
     geometry.margin = settings[parameters::margin];
+    geometry.pressures = has_polygons(settings);
     if (geometry.coordinate_axes && geometry.k != 8)
         throw InputError("setting axes=coordinate goes with k=8 only; leave axes out for other k");
     if (geometry.placement == Placement::exact && geometry.rounding != Rounding::safe

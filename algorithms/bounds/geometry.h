@@ -19,6 +19,7 @@ struct Geometry {
     Origin origin = Origin::world;            ///< of coordinates on devices
     Motion motion = Motion::none;             ///< linear not with published rounding
     double margin = 0;                        ///< 0 with published rounding
+    bool pressures = false;                   ///< vertices on devices carry the mesh's pressures
 
     /// Whether all members are equal.
     bool operator==(const Geometry&) const = default;

@@ -3,6 +3,7 @@
 
 #include "geometry/meet_exactly.h"
 #include "algorithms/narrow_phase/reference_pair.h"
+#include "algorithms/narrow_phase/reference_polygon.h"
 
 namespace tandem {
 
@@ -122,32 +123,59 @@ unsigned given_corners(unsigned bits, const Sorted<Real>& first, const Sorted<Re
     return swapped ? of_second | of_first << 4 : of_first | of_second << 4;
 }
 
+/// Values at the given corners, in the order of the sorted ones.
+template<class Real>
+std::array<Real, 4> sorted_values(const std::array<Real, 4>& given, const Sorted<Real>& sorted) {
+    std::array<Real, 4> values;
+    for (unsigned i = 0; i < 4; ++i) values[i] = given[sorted.names[i]];
+    return values;
+}
+
+/// A pair in canonical order.
+template<class Real>
+struct CanonicalPair {
+    Sorted<Real> first, second;
+    Boundaries boundaries;
+
+    /// `pair`: not loaded; gets all but the corners.
+    CanonicalPair(ReferencePair<Real>& pair, const GivenTetrahedron<Real>& a, const GivenTetrahedron<Real>& b)
+        : first(a.corners),
+          second(b.corners),
+          boundaries{sorted_faces(a.boundary, first), sorted_faces(b.boundary, second)} {
+        pair.pressures = {sorted_values(a.pressures, first), sorted_values(b.pressures, second)};
+        pair.swapped = second.corners < first.corners;
+        if (!pair.swapped) return;
+        std::swap(first, second);
+        std::swap(boundaries[0], boundaries[1]);
+        std::swap(pair.pressures[0], pair.pressures[1]);
+    }
+};
+
+/// The number of a contact's feature in the given pair.
+template<class Real>
+unsigned given_number(unsigned feature, const CanonicalPair<Real>& sorted, bool swapped, ContactRule rule) {
+    if (needs_pressures(rule)) return feature; // the number of corners
+    if (has_near_pairs(rule)) return given_corners(feature, sorted.first, sorted.second, swapped);
+    const unsigned owner = feature < 8 ? feature / 4 : feature < 32 ? 0 : 1;
+    const unsigned given_owner = swapped ? 1 - owner : owner;
+    return owner == 0 ? given_feature(feature, sorted.first, sorted.second, given_owner)
+                      : given_feature(feature, sorted.second, sorted.first, given_owner);
+}
+
 /// `pair`: not loaded.
 template<class Real>
-std::vector<Contact<Real>> canonical_contacts(ReferencePair<Real>& pair, const Corners<Real>& a,
-                                              const Corners<Real>& b, const Boundaries& given,
+std::vector<Contact<Real>> canonical_contacts(ReferencePair<Real>& pair, const GivenTetrahedron<Real>& a,
+                                              const GivenTetrahedron<Real>& b,
                                               const ContactSettings& settings, ContactCounts& counts) {
-    if (!finite(a) || !finite(b)) {
+    if (!finite(a.corners) || !finite(b.corners)) {
         if (!pair.apart) ++counts.degenerate;
         return {};
     }
-    Sorted<Real> first(a), second(b);
-    Boundaries boundaries{sorted_faces(given[0], first), sorted_faces(given[1], second)};
-    pair.swapped = second.corners < first.corners;
-    if (pair.swapped) {
-        std::swap(first, second);
-        std::swap(boundaries[0], boundaries[1]);
-    }
-    if (!loads(pair, first.corners, second.corners, settings, counts)) return {};
-    auto contacts = contacts_by_rule(pair, settings.rule, boundaries);
+    const CanonicalPair<Real> sorted(pair, a, b);
+    if (!loads(pair, sorted.first.corners, sorted.second.corners, settings, counts)) return {};
+    auto contacts = contacts_by_rule(pair, settings.rule, sorted.boundaries);
     for (auto& contact : contacts) {
-        const unsigned owner = contact.feature < 8 ? contact.feature / 4 : contact.feature < 32 ? 0 : 1;
-        const unsigned given_owner = pair.swapped ? 1 - owner : owner;
-        if (has_near_pairs(settings.rule))
-            contact.feature = given_corners(contact.feature, first, second, pair.swapped);
-        else
-            contact.feature = owner == 0 ? given_feature(contact.feature, first, second, given_owner)
-                                         : given_feature(contact.feature, second, first, given_owner);
+        contact.feature = given_number(contact.feature, sorted, pair.swapped, settings.rule);
         if (pair.swapped)
             for (Real& x : contact.normal) x = -x + Real(0);
     }
@@ -159,33 +187,47 @@ std::vector<Contact<Real>> canonical_contacts(ReferencePair<Real>& pair, const C
 } // namespace
 
 template<class Real>
-std::vector<Contact<Real>> reference_contacts(const Corners<Real>& a, const Corners<Real>& b,
-                                              unsigned boundary_a, unsigned boundary_b, ContactCounts& counts,
+std::vector<Contact<Real>> reference_contacts(const GivenTetrahedron<Real>& a,
+                                              const GivenTetrahedron<Real>& b, ContactCounts& counts,
                                               const ContactSettings& settings) {
-    const unsigned with_faces = (boundary_a != 0 ? 1 : 0) + (boundary_b != 0 ? 1 : 0);
+    const unsigned with_faces = (a.boundary != 0 ? 1 : 0) + (b.boundary != 0 ? 1 : 0);
     if (with_faces < boundaries_needed(settings.rule)) {
         ++counts.without_boundary;
         return {};
     }
     ReferencePair<Real> pair;
     pair.margin = margin_of(settings);
-    pair.apart = decided_apart(a, b, settings.decision, counts);
+    pair.apart = decided_apart(a.corners, b.corners, settings.decision, counts);
     if (pair.apart) {
         ++counts.rejected;
         if (!has_near_pairs(settings.rule)) return {};
     }
-    const Boundaries boundaries{boundary_a, boundary_b};
     if ((traits_of(settings.rule) & TANDEM_CANONICAL) != 0)
-        return canonical_contacts(pair, a, b, boundaries, settings, counts);
-    if (!loads(pair, a, b, settings, counts)) return {};
-    return contacts_by_rule(pair, settings.rule, boundaries);
+        return canonical_contacts(pair, a, b, settings, counts);
+    if (!loads(pair, a.corners, b.corners, settings, counts)) return {};
+    return contacts_by_rule(pair, settings.rule, {a.boundary, b.boundary});
 }
 
-template std::vector<Contact<float>> reference_contacts(const Corners<float>&, const Corners<float>&,
-                                                        unsigned, unsigned, ContactCounts&,
-                                                        const ContactSettings&);
-template std::vector<Contact<double>> reference_contacts(const Corners<double>&, const Corners<double>&,
-                                                         unsigned, unsigned, ContactCounts&,
-                                                         const ContactSettings&);
+template<class Real>
+std::vector<std::array<Real, 3>> polygon_of_equal_pressure(const GivenTetrahedron<Real>& a,
+                                                           const GivenTetrahedron<Real>& b) {
+    if (!finite(a.corners) || !finite(b.corners)) return {};
+    ReferencePair<Real> pair;
+    const CanonicalPair<Real> sorted(pair, a, b);
+    if (!pair.load(sorted.first.corners, sorted.second.corners)) return {};
+    auto corners = pressure_polygon(pair).corners;
+    for (auto& corner : corners) corner = corner / pair.scale + pair.origin;
+    return corners;
+}
+
+#define TANDEM_REFERENCE_IN(Real)                                                                            \
+    template std::vector<Contact<Real>> reference_contacts(const GivenTetrahedron<Real>&,                    \
+                                                           const GivenTetrahedron<Real>&, ContactCounts&,    \
+                                                           const ContactSettings&);                          \
+    template std::vector<std::array<Real, 3>> polygon_of_equal_pressure(const GivenTetrahedron<Real>&,       \
+                                                                        const GivenTetrahedron<Real>&);
+TANDEM_REFERENCE_IN(float)
+TANDEM_REFERENCE_IN(double)
+#undef TANDEM_REFERENCE_IN
 
 } // namespace tandem

@@ -25,12 +25,26 @@ struct ContactCounts {
     bool operator==(const ContactCounts&) const = default;
 };
 
-/// The contacts of one pair in ascending order of feature. They equal the kernel's bit by bit: this function
-/// uses the arithmetic of contacts.cl, but none of its code. Flat pairs that meet are degenerate. Bit i of
-/// `boundary_a`: the face opposite corner i of A is on its mesh's boundary. Real is float or double.
+/// A tetrahedron as the reference gets it, in the precision of the contact stage.
 template<class Real>
-std::vector<Contact<Real>> reference_contacts(const Corners<Real>& a, const Corners<Real>& b,
-                                              unsigned boundary_a, unsigned boundary_b, ContactCounts& counts,
+struct GivenTetrahedron {
+    Corners<Real> corners;           ///< in world coordinates
+    unsigned boundary = 15;          ///< bit i: the face opposite corner i is on its mesh's boundary
+    std::array<Real, 4> pressures{}; ///< at the corners; read by rules that need them
+};
+
+/// The contacts of one pair in ascending order of feature. They equal the kernel's bit by bit: this function
+/// uses the arithmetic of contacts.cl, but none of its code. Flat pairs that meet are degenerate. Real is
+/// float or double.
+template<class Real>
+std::vector<Contact<Real>> reference_contacts(const GivenTetrahedron<Real>& a,
+                                              const GivenTetrahedron<Real>& b, ContactCounts& counts,
                                               const ContactSettings& settings = {});
+
+/// The corners of the polygon of a pair by rule pressure, in world coordinates, in the order of the polygon;
+/// empty where reference_contacts() with that rule makes no row of a pair that meets.
+template<class Real>
+std::vector<std::array<Real, 3>> polygon_of_equal_pressure(const GivenTetrahedron<Real>& a,
+                                                           const GivenTetrahedron<Real>& b);
 
 } // namespace tandem

@@ -19,7 +19,8 @@ struct ReferencePair {
 
     std::array<Tetrahedron<Real>, 2> solids;
     std::array<Corners<Real>, 2> world;
-    std::array<Corners<Real>, 2> axes; ///< the normals before they are made unit vectors
+    std::array<std::array<Real, 4>, 2> pressures{}; ///< at the corners
+    std::array<Corners<Real>, 2> axes;              ///< the normals before they are made unit vectors
     Vector<Real> origin{};
     Real size = 0;
     Real scale = 1;

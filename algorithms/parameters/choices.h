@@ -162,6 +162,9 @@ constexpr unsigned boundaries_needed(ContactRule rule) {
 /// Whether the rule makes one row for each pair within the margin, whether it meets or not.
 constexpr bool has_near_pairs(ContactRule rule) { return (traits_of(rule) & TANDEM_WITHIN_MARGIN) != 0; }
 
+/// Whether the rule makes polygons of equal pressure, for which meshes need a pressure field.
+constexpr bool needs_pressures(ContactRule rule) { return (traits_of(rule) & TANDEM_PRESSURES) != 0; }
+
 /// PAIR_WORDS of pairs.clh.
 constexpr std::size_t words_of(PairLayout layout) { return layout == PairLayout::slots ? 2 : 4; }
 

@@ -11,6 +11,7 @@ using Numbers = std::span<const double>;
 Numbers point_of(const ContactPoint& row, Room&) { return row.point; }
 Numbers normal_of(const ContactPoint& row, Room&) { return row.normal; }
 Numbers depth_of(const ContactPoint& row, Room&) { return {&row.depth, 1}; }
+Numbers pressure_of(const ContactPoint& row, Room&) { return {&row.pressure, 1}; }
 Numbers other_point_of(const ContactPoint& row, Room& room) { return room = other_point(row); }
 
 constexpr std::array contact_columns{
@@ -24,10 +25,17 @@ constexpr std::array distance_columns{
     RowColumn{"normal", "nx,ny,nz", "1", "from point a to point b, of length 1", normal_of},
     RowColumn{"distance", "distance", "length", "negative for two that meet", depth_of}};
 
+constexpr std::array pressure_columns{
+    RowColumn{"centroid", "cx,cy,cz", "length", "of the polygon of equal pressure", point_of},
+    RowColumn{"normal", "nx,ny,nz", "1", "of the polygon, into body a, of length 1", normal_of},
+    RowColumn{"area", "area", "length squared", "of the polygon", depth_of},
+    RowColumn{"pressure", "pressure", "that of the meshes' field", "at the centroid", pressure_of}};
+
 } // namespace
 
 std::span<const RowColumn> row_columns(ContactRule rule) {
     if (has_near_pairs(rule)) return distance_columns;
+    if (needs_pressures(rule)) return pressure_columns;
     return contact_columns;
 }
 

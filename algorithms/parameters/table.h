@@ -238,6 +238,12 @@ inline bool makes_contacts(const Settings& settings) {
     return has_pairs(settings[parameters::output]) && settings[parameters::contact_rule] != ContactRule::none;
 }
 
+/// Whether these contacts are polygons of equal pressure, so that vertices carry pressures.
+inline bool has_polygons(const Settings& settings) {
+    return settings.has(parameters::contact_rule) && makes_contacts(settings)
+           && needs_pressures(settings[parameters::contact_rule]);
+}
+
 /// Whether a session walks a part of a frame's body pairs (first_body_pair, most_body_pairs).
 inline bool walks_part(const Settings& settings) {
     return settings.has(parameters::first_body_pair)

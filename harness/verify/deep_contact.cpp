@@ -31,7 +31,9 @@ std::optional<DeepContact> deepest_beyond_body(const Scene& scene, const Frame& 
     std::optional<DeepContact> deepest;
     if (contacts.empty()) return deepest;
     const auto sizes = sizes_of(scene, frame);
-    for (const auto& [pair, feature, point, normal, depth] : contacts) {
+    for (const auto& contact : contacts) {
+        const auto& pair = contact.pair;
+        const double depth = contact.depth;
         const double size = std::min(sizes[pair.body_a], sizes[pair.body_b]);
         if (-depth > size && (!deepest || depth < deepest->depth))
             deepest = DeepContact{number, pair.body_a, pair.tet_a, pair.body_b, pair.tet_b, depth, size};

@@ -129,11 +129,8 @@ public:
         ContactCounts counts;
         std::vector<PairContact<Real>> found;
         for (const auto& p : pairs) {
-            const auto flags_a = scene_.meshes[scene_.bodies[p.body_a].mesh].boundary[p.tet_a];
-            const auto flags_b = scene_.meshes[scene_.bodies[p.body_b].mesh].boundary[p.tet_b];
             for (const auto& contact :
-                 reference_contacts<Real>(corners(p.body_a, p.tet_a), corners(p.body_b, p.tet_b), flags_a,
-                                          flags_b, counts, settings_))
+                 reference_contacts(given(p.body_a, p.tet_a), given(p.body_b, p.tet_b), counts, settings_))
                 found.emplace_back(p, contact);
         }
         if (settings_.closest) keep_closest(found);
@@ -156,11 +153,16 @@ public:
     }
 
 private:
-    Corners<Real> corners(std::uint32_t body, std::uint32_t tetrahedron) const {
-        Corners<Real> result;
-        for (int i = 0; i < 4; ++i)
-            result[i] =
-                bounds_[body].vertices[scene_.meshes[scene_.bodies[body].mesh].tetrahedra[tetrahedron][i]];
+    GivenTetrahedron<Real> given(std::uint32_t body, std::uint32_t tetrahedron) const {
+        const auto& mesh = scene_.meshes[scene_.bodies[body].mesh];
+        GivenTetrahedron<Real> result{.corners = {}, .boundary = mesh.boundary[tetrahedron]};
+        for (unsigned i = 0; i < 4; ++i) {
+            const auto vertex = mesh.tetrahedra[tetrahedron][i];
+            result.corners[i] = bounds_[body].vertices[vertex];
+            // -1, which is no pressure of a field, for a mesh without one.
+            result.pressures[i] =
+                mesh.pressures.empty() ? Real(-1) : static_cast<Real>(mesh.pressures[vertex]);
+        }
         return result;
     }
 

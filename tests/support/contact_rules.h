@@ -28,7 +28,9 @@ inline bool has_trait(ContactRule rule, unsigned trait) { return (traits_of(rule
 /// Those whose contacts are points that two tetrahedra have in common.
 inline std::vector<NamedRule> common_point_rules() {
     auto rules = contact_rules();
-    std::erase_if(rules, [](const NamedRule& named) { return has_near_pairs(named.rule); });
+    std::erase_if(rules, [](const NamedRule& named) {
+        return has_near_pairs(named.rule) || needs_pressures(named.rule);
+    });
     return rules;
 }
 

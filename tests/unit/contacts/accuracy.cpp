@@ -29,8 +29,8 @@ struct Errors {
 
 void add(Errors& errors, const OraclePair& pair, const ContactTruth& truth, ContactRule rule) {
     ContactCounts counts;
-    const auto contacts = reference_contacts(narrowed(pair.a), narrowed(pair.b), 15, 15, counts,
-                                             {rule, DecisionPrecision::fp32});
+    const auto contacts = reference_contacts<float>({narrowed(pair.a)}, {narrowed(pair.b)}, counts,
+                                                    {rule, DecisionPrecision::fp32});
     ++errors.pairs;
     errors.without_contact += contacts.empty() ? 1 : 0;
     if (contacts.empty()) return;

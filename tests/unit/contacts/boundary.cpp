@@ -28,7 +28,8 @@ protected:
 
     std::vector<Contact<Real>> contacts(ContactRule rule, const Corners<Real>& a, const Corners<Real>& b,
                                         unsigned boundary_a = all, unsigned boundary_b = all) {
-        return reference_contacts(a, b, boundary_a, boundary_b, counts, {rule, DecisionPrecision::fp32});
+        return reference_contacts<Real>({a, boundary_a}, {b, boundary_b}, counts,
+                                        {rule, DecisionPrecision::fp32});
     }
 
     /// Expects contacts with exactly these features, all with one normal and depth.

@@ -67,8 +67,8 @@ void compare(const OraclePair& pair, Tally& tally) {
     const auto truth = contact_truth(pair.a, pair.b);
     if (!truth || truth->relation != Relation::overlapping) return;
     ContactCounts counts;
-    const auto contacts = reference_contacts(narrowed<Real>(pair.a), narrowed<Real>(pair.b), 15, 15, counts,
-                                             {ContactRule::clip, DecisionPrecision::none});
+    const auto contacts = reference_contacts<Real>({narrowed<Real>(pair.a)}, {narrowed<Real>(pair.b)}, counts,
+                                                   {ContactRule::clip, DecisionPrecision::none});
     if (counts.degenerate != 0 || contacts.empty()) return;
     const ExactSurface surface(pair.a, pair.b);
     const double side = norm(surface.normal);
@@ -115,8 +115,8 @@ protected:
 
     static double depth_of(const TetraCorners& a, const TetraCorners& b) {
         ContactCounts counts;
-        const auto contacts = reference_contacts(narrowed<Real>(a), narrowed<Real>(b), 15, 15, counts,
-                                                 {ContactRule::clip, DecisionPrecision::fp32});
+        const auto contacts = reference_contacts<Real>({narrowed<Real>(a)}, {narrowed<Real>(b)}, counts,
+                                                       {ContactRule::clip, DecisionPrecision::fp32});
         return contacts.empty() ? 0 : -static_cast<double>(contacts.front().depth);
     }
 };

@@ -28,8 +28,8 @@ Score score(const std::vector<OraclePair>& pairs, DecisionPrecision decision) {
     for (const auto& pair : pairs) {
         EXPECT_TRUE(all_floats(pair));
         ContactCounts counts;
-        reference_contacts(narrowed(pair.a), narrowed(pair.b), 15, 15, counts,
-                           {ContactRule::opposing, decision});
+        reference_contacts<float>({narrowed(pair.a)}, {narrowed(pair.b)}, counts,
+                                  {ContactRule::opposing, decision});
         const bool disjoint = relation(pair.a, pair.b) == Relation::disjoint;
         ++result.pairs;
         result.missed += !disjoint ? counts.rejected : 0;
@@ -192,8 +192,9 @@ TEST(ContactsDecision, FlatAndUnusableTetrahedraAreDecidedExactly) {
     ContactCounts counts;
     const auto decide = [&](const Corners<float>& b) {
         counts = {};
-        EXPECT_TRUE(reference_contacts(block, b, 15, 15, counts, {ContactRule::sat, DecisionPrecision::exact})
-                        .empty());
+        EXPECT_TRUE(
+            reference_contacts<float>({block}, {b}, counts, {ContactRule::sat, DecisionPrecision::exact})
+                .empty());
         return std::pair(counts.rejected, counts.degenerate);
     };
     using Counted = std::pair<std::uint64_t, std::uint64_t>;

@@ -178,8 +178,8 @@ struct Errors {
 template<class Real>
 std::vector<Contact<Real>> rows_of(const Corners<Real>& a, const Corners<Real>& b, double margin,
                                    ContactCounts& counts) {
-    return reference_contacts(
-        a, b, 15, 15, counts,
+    return reference_contacts<Real>(
+        {a}, {b}, counts,
         {.rule = ContactRule::distance, .decision = DecisionPrecision::exact, .margin = margin});
 }
 

@@ -10,13 +10,13 @@ template<class Real>
 class ContactsInvariance : public testing::Test {
 protected:
     std::vector<Contact<Real>> contacts(const TetrahedronPair<Real>& pair) {
-        return reference_contacts(pair.a, pair.b, pair.boundary_a, pair.boundary_b, counts);
+        return reference_contacts(pair.given_a(), pair.given_b(), counts);
     }
 
     /// 'd' degenerate, 'r' rejected, 'm' intersecting.
     static char decision(const Corners<Real>& a, const Corners<Real>& b) {
         ContactCounts one;
-        reference_contacts(a, b, 15, 15, one);
+        reference_contacts<Real>({a}, {b}, one);
         return one.degenerate != 0 ? 'd' : one.rejected != 0 ? 'r' : 'm';
     }
 

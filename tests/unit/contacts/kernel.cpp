@@ -20,7 +20,7 @@ struct Expected {
     explicit Expected(const std::vector<TetrahedronPair<Real>>& pairs, ContactSettings settings = {}) {
         for (std::uint32_t i = 0; i < pairs.size(); ++i) {
             const auto& p = pairs[i];
-            contacts.push_back(reference_contacts(p.a, p.b, p.boundary_a, p.boundary_b, counts, settings));
+            contacts.push_back(reference_contacts(p.given_a(), p.given_b(), counts, settings));
             total += contacts.back().size();
             const auto id = ContactKernels<Real>::input_id(i);
             for (const auto& contact : contacts.back()) {

@@ -45,9 +45,8 @@ std::vector<std::vector<Contact<Real>>> by_pair(const ContactOutcome<Real>& outc
     std::vector<std::vector<Contact<Real>>> result(pairs);
     for (std::size_t i = 0; i < rows; ++i) {
         const Real* v = &outcome.values[8 * i];
-        EXPECT_EQ(v[7], 0);
         result.at(outcome.rows[i].pair)
-            .push_back({outcome.rows[i].feature, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}, v[6]});
+            .push_back({outcome.rows[i].feature, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}, v[6], v[7]});
     }
     for (auto& contacts : result)
         std::sort(contacts.begin(), contacts.end(),
@@ -67,10 +66,12 @@ public:
         std::vector<Real> vertices;
         for (const bool second : {false, true})
             for (const auto& pair : pairs) {
-                for (const auto& corner : second ? pair.b : pair.a) {
+                const auto given = second ? pair.given_b() : pair.given_a();
+                for (unsigned i = 0; i < 4; ++i) {
+                    const auto& corner = given.corners[i];
                     tetrahedra.push_back(static_cast<std::uint32_t>(vertices.size() / 4)
                                          - (second ? 4 * count : 0));
-                    vertices.insert(vertices.end(), {corner[0], corner[1], corner[2], 0});
+                    vertices.insert(vertices.end(), {corner[0], corner[1], corner[2], given.pressures[i]});
                 }
                 boundary.push_back(static_cast<unsigned char>(second ? pair.boundary_b : pair.boundary_a));
             }

@@ -21,8 +21,8 @@ protected:
     /// Common normal and depth of the pair's contacts.
     static Contact<Real> contact_of(const OraclePair& pair, ContactRule rule) {
         ContactCounts counts;
-        const auto contacts = reference_contacts(narrowed<Real>(pair.a), narrowed<Real>(pair.b), 15, 15,
-                                                 counts, {rule, DecisionPrecision::fp32});
+        const auto contacts = reference_contacts<Real>({narrowed<Real>(pair.a)}, {narrowed<Real>(pair.b)},
+                                                       counts, {rule, DecisionPrecision::fp32});
         EXPECT_FALSE(contacts.empty());
         return contacts.empty() ? Contact<Real>{} : contacts.front();
     }

@@ -10,11 +10,15 @@
 
 namespace tandem::unit_test {
 
-/// Two tetrahedra and the boundary bits of their faces.
+/// Two tetrahedra, the boundary bits of their faces, and pressures at their corners.
 template<class Real>
 struct TetrahedronPair {
     Corners<Real> a, b;
     unsigned boundary_a = 15, boundary_b = 15;
+    std::array<Real, 4> pressures_a{}, pressures_b{};
+
+    GivenTetrahedron<Real> given_a() const { return {a, boundary_a, pressures_a}; }
+    GivenTetrahedron<Real> given_b() const { return {b, boundary_b, pressures_b}; }
 };
 
 template<class Real, class Change>
@@ -40,6 +44,33 @@ Corners<Real> narrowed(const TetraCorners& corners) {
     return result;
 }
 
+/// Pressures at corners: random, many of them 0, or those of one linear field over both tetrahedra.
+template<class Real>
+class PressureMaker {
+public:
+    void set(TetrahedronPair<Real>& pair) {
+        const auto kind = random_() % 8;
+        const auto scale = std::ldexp(Real(1), static_cast<int>(random_() % 61) - 30);
+        const std::array<Real, 3> along{value(), value(), value()};
+        for (auto [corners, pressures] :
+             {std::pair(&pair.a, &pair.pressures_a), {&pair.b, &pair.pressures_b}})
+            for (unsigned i = 0; i < 4; ++i) {
+                const auto& c = (*corners)[i];
+                const Real linear = 8 + c[0] * along[0] + c[1] * along[1] + c[2] * along[2];
+                const Real one = kind == 0   ? linear
+                                 : kind == 1 ? std::max(value() - Real(0.5), Real(0))
+                                             : value();
+                (*pressures)[i] =
+                    one >= 0 && one < 16 ? scale * one : 0; // some corners are far or not finite
+            }
+    }
+
+private:
+    Real value() { return static_cast<Real>(random_() % 1024) / 1024; }
+
+    std::mt19937 random_{3};
+};
+
 /// Families of close pairs. The same seed gives the same pairs on every platform.
 template<class Real>
 class PairMaker {
@@ -49,7 +80,7 @@ public:
     TetrahedronPair<Real> make(Family family) {
         const auto lattice_point = [this] { return static_cast<Real>(static_cast<int>(random_() % 5) - 2); };
         const auto point = [this] { return uniform(); };
-        TetrahedronPair<Real> pair{corners(point), corners(point), bits(), bits()};
+        TetrahedronPair<Real> pair{corners(point), corners(point), bits(), bits(), {}, {}};
         if (random_() % 4 != 0) pair.boundary_a = pair.boundary_b = 15;
         if (family == lattice) pair.a = corners(lattice_point), pair.b = corners(lattice_point);
         if (family == sliver) pair.a[3] = between(pair.a, Real(1e-5) * uniform());
@@ -60,6 +91,7 @@ public:
             pair.b = moved<Real>(pair.b, {1000, -500, 250});
         }
         if (family == spoiled) spoil(pair);
+        pressures_.set(pair);
         return pair;
     }
 
@@ -97,6 +129,7 @@ private:
     }
 
     std::mt19937 random_{20240611};
+    PressureMaker<Real> pressures_;
 };
 
 } // namespace tandem::unit_test

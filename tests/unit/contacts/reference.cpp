@@ -17,7 +17,7 @@ protected:
 
     std::vector<Contact<Real>> contacts(const Corners<Real>& a, const Corners<Real>& b,
                                         unsigned boundary_a = 15, unsigned boundary_b = 15) {
-        return reference_contacts(a, b, boundary_a, boundary_b, counts);
+        return reference_contacts<Real>({a, boundary_a}, {b, boundary_b}, counts);
     }
 
     static std::vector<unsigned> features(const std::vector<Contact<Real>>& contacts) {

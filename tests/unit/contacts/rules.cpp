@@ -42,8 +42,7 @@ class ContactsRules : public testing::Test {
 protected:
     static std::vector<Contact<Real>> contacts(const TetrahedronPair<Real>& pair, ContactRule rule,
                                                ContactCounts& counts) {
-        return reference_contacts(pair.a, pair.b, pair.boundary_a, pair.boundary_b, counts,
-                                  {rule, DecisionPrecision::fp32});
+        return reference_contacts(pair.given_a(), pair.given_b(), counts, {rule, DecisionPrecision::fp32});
     }
 
     static void sort(std::vector<Contact<Real>>& contacts) {
@@ -230,8 +229,8 @@ Real deepest_of_touching_cubes(ContactRule rule, std::size_t& sideways) {
     for (const auto& [a, boundary_a] : cube<Real>({0, 0, 0}))
         for (const auto& [b, boundary_b] : cube<Real>({Real(0.25), Real(0.125), 1})) {
             ContactCounts counts;
-            for (const auto& contact :
-                 reference_contacts(a, b, boundary_a, boundary_b, counts, {rule, DecisionPrecision::fp32})) {
+            for (const auto& contact : reference_contacts<Real>({a, boundary_a}, {b, boundary_b}, counts,
+                                                                {rule, DecisionPrecision::fp32})) {
                 deepest = std::max(deepest, std::abs(contact.depth));
                 sideways +=
                     std::abs(contact.depth) > Real(1e-3) && std::abs(contact.normal[2]) < Real(0.5) ? 1 : 0;

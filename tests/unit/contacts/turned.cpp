@@ -35,8 +35,9 @@ Vector vector_of(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
 
 std::vector<Contact<double>> contacts_of(const Pair& pair, ContactRule rule) {
     ContactCounts counts;
-    return reference_contacts(corners_of(pair.a), corners_of(pair.b), pair.boundary_a, pair.boundary_b,
-                              counts, {rule, DecisionPrecision::fp64});
+    return reference_contacts<double>({corners_of(pair.a), pair.boundary_a},
+                                      {corners_of(pair.b), pair.boundary_b}, counts,
+                                      {rule, DecisionPrecision::fp64});
 }
 
 double longest_edge(const Solid& solid) {

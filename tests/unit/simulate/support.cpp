@@ -64,9 +64,10 @@ void add_contacts(const Placed& a, const Placed& b, const ContactSettings& setti
     for (std::uint32_t i = 0; i < a.corners.size(); ++i)
         for (std::uint32_t j = 0; j < b.corners.size(); ++j) {
             if (!a.boxes[i].intersects(b.boxes[j])) continue;
-            for (const auto& c : reference_contacts<double>(a.corners[i], b.corners[j], a.mesh->boundary[i],
-                                                            b.mesh->boundary[j], counts, settings))
-                contacts.push_back({{a.body, i, b.body, j}, c.feature, c.point, c.normal, c.depth});
+            for (const auto& c :
+                 reference_contacts<double>({a.corners[i], a.mesh->boundary[i]},
+                                            {b.corners[j], b.mesh->boundary[j]}, counts, settings))
+                contacts.push_back({{a.body, i, b.body, j}, c.feature, c.point, c.normal, c.depth, 0});
         }
 }
 

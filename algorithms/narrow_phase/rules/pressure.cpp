@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/narrow_phase/reference_polygon.h"
+
+namespace tandem::narrow_phase {
+
+namespace {
+
+template<class Real>
+using Polygon = std::vector<Vector<Real>>;
+
+/// A linear function on a tetrahedron: its value at the first corner, its gradient and the gradient's error.
+template<class Real>
+struct LinearField {
+    Real at_first;
+    Vector<Real> gradient{};
+    Real error = 0;
+
+    /// `values`: at the corners.
+    LinearField(const ReferencePair<Real>& pair, unsigned solid, const std::array<Real, 4>& values)
+        : at_first(values[0]) {
+        const auto& world = pair.world[solid];
+        for (unsigned i = 1; i < 4; ++i) {
+            const auto& normal = pair.solids[solid].normals[i];
+            const Real height = dot(normal, (world[i] - world[0]) * pair.scale);
+            gradient = gradient + normal * ((values[i] - values[0]) / height);
+            error += (std::abs(values[i]) + std::abs(values[0])) / std::abs(height);
+        }
+        error *= 8 * unit_roundoff<Real>;
+    }
+};
+
+/// 5 pi / 8 is the largest angle between a polygon's normal and a gradient.
+template<class Real>
+bool is_along(const Vector<Real>& gradient, const Vector<Real>& normal) {
+    const Real cosine = Real(-0.3826834323650898);
+    return dot(gradient, normal) >= cosine * std::sqrt(dot(gradient, gradient));
+}
+
+template<class Real>
+Vector<Real> zero_between(const Vector<Real>& from, const Vector<Real>& to, Real at_from, Real at_to) {
+    return from + (to - from) * (at_from / (at_from - at_to));
+}
+
+/// The polygon where a linear function is 0, which has these values at the corners.
+template<class Real>
+Polygon<Real> plane_cut(Corners<Real> corners, std::array<Real, 4> values) {
+    constexpr unsigned network[][2] = {{0, 1}, {2, 3}, {0, 2}, {1, 3}, {1, 2}};
+    for (const auto& [i, j] : network)
+        if (values[j] < values[i]) {
+            std::swap(values[i], values[j]);
+            std::swap(corners[i], corners[j]);
+        }
+    const auto below = std::ranges::count_if(values, [](Real value) { return value <= 0; });
+    if (below == 0 || below == 4) return {};
+    static const std::vector<std::array<unsigned, 2>> edges[] = {
+        {{0, 1}, {0, 2}, {0, 3}}, {{0, 2}, {0, 3}, {1, 3}, {1, 2}}, {{0, 3}, {1, 3}, {2, 3}}};
+    Polygon<Real> polygon;
+    for (const auto& [i, j] : edges[below - 1])
+        polygon.push_back(zero_between(corners[i], corners[j], values[i], values[j]));
+    return polygon;
+}
+
+/// Without what is in front of a face.
+template<class Real>
+Polygon<Real> clipped(Polygon<Real> polygon, const Tetrahedron<Real>& solid, unsigned face) {
+    std::vector<Real> heights;
+    for (const auto& corner : polygon) heights.push_back(solid.distance(face, corner));
+    const auto in_front = [](Real height) { return height > 0; };
+    if (std::ranges::none_of(heights, in_front)) return polygon;
+    const auto deepest = std::ranges::min_element(heights) - heights.begin();
+    std::ranges::rotate(heights, heights.begin() + deepest);
+    std::ranges::rotate(polygon, polygon.begin() + deepest);
+    if (heights[0] > 0) return {};
+    const auto first = static_cast<std::size_t>(std::ranges::find_if(heights, in_front) - heights.begin());
+    auto last = heights.size() - 1;
+    while (!in_front(heights[last])) --last;
+    const auto after = (last + 1) % heights.size();
+    const auto leaving = zero_between(polygon[first - 1], polygon[first], heights[first - 1], heights[first]);
+    const auto entering = zero_between(polygon[after], polygon[last], heights[after], heights[last]);
+    Polygon<Real> rest(polygon.begin(), polygon.begin() + static_cast<std::ptrdiff_t>(first));
+    rest.insert(rest.end(), {leaving, entering});
+    rest.insert(rest.end(), polygon.begin() + static_cast<std::ptrdiff_t>(last) + 1, polygon.end());
+    return rest;
+}
+
+/// Sets area and centroid of a polygon with corners and normal.
+template<class Real>
+void measure(PressurePolygon<Real>& polygon) {
+    const auto& corners = polygon.corners;
+    Real twice = 0;
+    Vector<Real> moment{};
+    for (std::size_t i = 2; i < corners.size(); ++i) {
+        const auto e = corners[i - 1] - corners[0], f = corners[i] - corners[0];
+        const Real part = std::abs(dot(cross(e, f), polygon.normal));
+        twice += part;
+        moment = moment + (e + f) * part;
+    }
+    polygon.area = Real(0.5) * twice;
+    polygon.centroid = corners[0] + moment / (3 * twice);
+}
+
+/// Leaves of equal corners beside each other one.
+template<class Real>
+void merge_equal(Polygon<Real>& corners) {
+    const auto rest = std::ranges::unique(corners);
+    corners.erase(rest.begin(), rest.end());
+    while (corners.size() > 1 && corners.front() == corners.back()) corners.pop_back();
+}
+
+} // namespace
+
+template<class Real>
+PressurePolygon<Real> pressure_polygon(const ReferencePair<Real>& pair) {
+    Real largest = 0;
+    for (const auto& four : pair.pressures)
+        for (const Real value : four) largest = std::max(largest, std::abs(value));
+    const Real scale = scale_of(largest);
+    auto pressures = pair.pressures;
+    for (auto& four : pressures)
+        for (Real& value : four) value *= scale;
+    const Real low = std::max(std::ranges::min(pressures[0]), std::ranges::min(pressures[1]));
+    const Real high = std::min(std::ranges::max(pressures[0]), std::ranges::max(pressures[1]));
+    if (low > high) return {};
+    const LinearField a(pair, 0, pressures[0]), b(pair, 1, pressures[1]);
+    const auto difference = a.gradient - b.gradient;
+    if (tandem::narrow_phase::largest(difference) <= a.error + b.error) return {};
+    PressurePolygon<Real> result;
+    result.normal = unit(difference);
+    if (!is_along(a.gradient, result.normal) || !is_along(b.gradient, result.normal * Real(-1))) return {};
+    std::array<Real, 4> excess;
+    for (unsigned i = 0; i < 4; ++i)
+        excess[i] = pressures[0][i]
+                    - (b.at_first + dot(b.gradient, (pair.world[0][i] - pair.world[1][0]) * pair.scale));
+    result.corners = plane_cut(pair.solids[0].corners, excess);
+    for (unsigned face = 0; face < 4 && !result.corners.empty(); ++face)
+        result.corners = clipped(std::move(result.corners), pair.solids[1], face);
+    if (result.corners.empty()) return {};
+    measure(result);
+    merge_equal(result.corners);
+    if (!(result.area > 0) || result.corners.size() < 3) return {};
+    const Real at_centroid = a.at_first + dot(a.gradient, result.centroid - pair.solids[0].corners[0]);
+    result.pressure = std::min(std::max(at_centroid, low), high) / scale;
+    return result;
+}
+
+template PressurePolygon<float> pressure_polygon(const ReferencePair<float>&);
+template PressurePolygon<double> pressure_polygon(const ReferencePair<double>&);
+
+template<class Real>
+std::vector<Contact<Real>> pressure_contacts(const ReferencePair<Real>& pair, const Boundaries&) {
+    const auto polygon = pressure_polygon(pair);
+    if (polygon.corners.empty()) return {};
+    auto contact = pair.contact({static_cast<unsigned>(polygon.corners.size()), polygon.centroid},
+                                polygon.normal, polygon.area / pair.scale);
+    contact.pressure = polygon.pressure + Real(0);
+    return {contact};
+}
+
+TANDEM_REFERENCE_OF(pressure)
+
+} // namespace tandem::narrow_phase
