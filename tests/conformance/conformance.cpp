@@ -134,6 +134,16 @@ SettingTexts resident_row(SettingTexts row) {
     return row;
 }
 
+/// Replaces the values of a row that do not go with polygons of equal pressure.
+SettingTexts with_one_field(SettingTexts row) {
+    if (row.at("contact_rule") != "pressure") return row;
+    if (row.at("residency") == "published" || row.at("motion") == "linear")
+        row["contact_rule"] = "sat";
+    else
+        row["self"] = "off";
+    return row;
+}
+
 /// Splits a row that combines values that exclude each other: one row with the later ones, one with those of
 /// the published data path. Contacts of a frame with a successor need exact decisions; distances are those of
 /// one frame.
@@ -152,6 +162,7 @@ std::vector<SettingTexts> possible(const std::vector<SettingTexts>& rows) {
         all.push_back(row);
         for (const auto& [name, value] : published) all.back()[name] = value;
     }
+    for (auto& row : all) row = with_one_field(std::move(row));
     return all;
 }
 

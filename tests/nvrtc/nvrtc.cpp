@@ -14,6 +14,7 @@
 #include "tests/support/contact_rules.h"
 #include "tests/support/folder.h"
 #include "tests/support/long_form.h"
+#include "tests/support/scenes.h"
 
 #include <algorithm>
 #include <atomic>
@@ -61,6 +62,7 @@ const cuda::Image& for_hopper(const KernelSource& source, const Defines& defines
 void prepare(Device& device, const Traversal& traversal, std::span<const Assignment> from,
              const SettingTexts& given) {
     auto scene = make_scene("pile:bodies=2,frames=1");
+    support::set_pressures(scene);
     const auto settings = resolve(traversal.parameters(), from, given, traversal.name());
     const std::array devices{&device};
     const auto session = traversal.prepare(devices, scene, settings);

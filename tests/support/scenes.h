@@ -62,12 +62,23 @@ inline Mesh one_tetrahedron(double edge) {
     return mesh;
 }
 
-/// Crowded bodies of three meshes (1, 48 and 162 tetrahedra); body 0 is fixed, body 1 deformable; two frames.
+/// Gives each mesh of a scene a field: random pressures below 1, a third of which are 0.
+inline void set_pressures(Scene& scene) {
+    Random random(7);
+    for (auto& mesh : scene.meshes) {
+        mesh.pressures.resize(mesh.vertices.size());
+        for (double& pressure : mesh.pressures) pressure = std::max(0.0, random.uniform(-0.5, 1));
+    }
+}
+
+/// Crowded bodies of three meshes (1, 48 and 162 tetrahedra) with pressure fields; body 0 is fixed, body 1
+/// deformable; two frames.
 inline Scene crowd(std::uint64_t seed, std::uint32_t bodies, double spread) {
     Random random(seed);
     Scene scene;
     scene.name = scene.key = "crowd";
     scene.meshes = {shaken_box(3, random), shaken_box(2, random), one_tetrahedron(0.7)};
+    set_pressures(scene);
     std::vector<std::array<Pose, 2>> poses(bodies);
     for (std::uint32_t i = 0; i < bodies; ++i) {
         scene.bodies.push_back({.mesh = i < 2 ? i : i % 3, .fixed = i == 0, .deformable = i == 1});
@@ -118,6 +129,7 @@ inline Scene procession(std::uint32_t bodies, std::size_t frames, double step) {
     Scene scene;
     scene.name = scene.key = "procession";
     scene.meshes = {shaken_box(2, random)};
+    set_pressures(scene);
     scene.bodies.resize(bodies);
     scene.bodies[0].fixed = true;
     scene.bodies[1].deformable = true;

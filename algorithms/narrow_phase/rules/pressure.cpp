@@ -19,13 +19,17 @@ struct LinearField {
     LinearField(const ReferencePair<Real>& pair, unsigned solid, const std::array<Real, 4>& values)
         : at_first(values[0]) {
         const auto& world = pair.world[solid];
+        Real sum = 0, longest = 0, least = std::numeric_limits<Real>::infinity();
         for (unsigned i = 1; i < 4; ++i) {
             const auto& normal = pair.solids[solid].normals[i];
-            const Real height = dot(normal, (world[i] - world[0]) * pair.scale);
+            const auto edge = (world[i] - world[0]) * pair.scale;
+            const Real height = dot(normal, edge);
             gradient = gradient + normal * ((values[i] - values[0]) / height);
-            error += (std::abs(values[i]) + std::abs(values[0])) / std::abs(height);
+            sum += (std::abs(values[i]) + std::abs(values[0])) / std::abs(height);
+            longest = std::max(longest, largest(edge));
+            least = std::min(least, std::abs(height));
         }
-        error *= 8 * unit_roundoff<Real>;
+        error = 8 * unit_roundoff<Real> * (sum * (1 + longest / least));
     }
 };
 

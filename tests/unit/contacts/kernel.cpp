@@ -210,6 +210,8 @@ TYPED_TEST(ContactsKernel, EveryRuleAndDecisionEqualsTheReferenceLong) {
     add_concentric_pairs(pairs);
     add_nested_pairs(pairs);
     add_hard_pairs(pairs);
+    PressureMaker<TypeParam> pressures;
+    for (auto& pair : pairs) pressures.set(pair);
     const auto count = static_cast<std::uint32_t>(pairs.size());
     for (const auto settings : rules_and_decisions()) {
         const Expected<TypeParam> expected(pairs, settings);
