@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // output=wrenches: the polygons of each body pair are added up to the force on body a, the torque about its
 // pose, and the area. A sum is a fixed-point number of 64 and 32 bits, so that the order of additions does
-// not matter: units are powers of two for each body pair, from its bodies' sizes. Host variants: PRECISION
+// not matter. Units are powers of two for each body pair, from the sizes and pressures of the two meshes.
+// Host variants: PRECISION
 #include "backends/portable.h"
 #include "algorithms/answer/body_pair_table.clh"
 #include "algorithms/bodies/body.clh"

@@ -10,16 +10,19 @@ namespace tandem {
 
 Dumps::Dumps(const RunOptions& options, bool writes)
     : pairs_(writes ? options.dump_pairs : std::string(), pairs_header),
-      contacts_(writes ? options.dump_contacts : std::string(), row_header(ContactRule::opposing)),
-      distances_(writes ? options.dump_distances : std::string(), row_header(ContactRule::distance)),
+      contacts_(writes ? options.dump_contacts : std::string(), ""),
+      distances_(writes ? options.dump_distances : std::string(), ""),
       trace_(writes ? options.trace : std::string()) {}
 
 void Dumps::dump(const Cell& cell, const Task& task) {
     const auto session = prepare_session(cell, task.scene);
-    const auto columns = row_columns(session->settings()[parameters::contact_rule]);
+    const auto& settings = session->settings();
+    const auto columns = row_columns(settings[parameters::contact_rule], settings[parameters::output]);
+    contacts_.set_header(row_header(columns));
+    distances_.set_header(row_header(columns));
     for (std::size_t i = 0; i < task.range.size(); ++i) {
         if (decided(cell.team, Interrupt::asked())) throw Interrupted();
-        const auto state = task.range.state(i, session->settings()[parameters::motion]);
+        const auto state = task.range.state(i, settings[parameters::motion]);
         const auto result = session->run(FrameView(state.input()).checked());
         // Collective: all ranks download; only rank 0 writes.
         if (!task.options.dump_pairs.empty())
