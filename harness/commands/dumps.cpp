@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "harness/commands/dumps.h"
 
+#include "algorithms/bodies/origin.h"
 #include "harness/plans/cell_session.h"
 #include "harness/plans/rank_team.h"
 #include "harness/profile/timeline/trace_frame.h"
 #include "harness/program/interrupt.h"
+#include "harness/verify/contact_surfaces.h"
+#include "scenes/export/surfaces.h"
 
 namespace tandem {
 
@@ -12,6 +15,7 @@ Dumps::Dumps(const RunOptions& options, bool writes)
     : pairs_(writes ? options.dump_pairs : std::string(), pairs_header),
       contacts_(writes ? options.dump_contacts : std::string(), ""),
       distances_(writes ? options.dump_distances : std::string(), ""),
+      surfaces_(writes ? options.dump_surfaces : std::string()),
       trace_(writes ? options.trace : std::string()) {}
 
 void Dumps::dump(const Cell& cell, const Task& task) {
@@ -20,6 +24,8 @@ void Dumps::dump(const Cell& cell, const Task& task) {
     const auto columns = row_columns(settings[parameters::contact_rule], settings[parameters::output]);
     contacts_.set_header(row_header(columns));
     distances_.set_header(row_header(columns));
+    SurfaceFrames surfaces;
+    const auto geometry = geometry_of(settings);
     for (std::size_t i = 0; i < task.range.size(); ++i) {
         if (decided(cell.team, Interrupt::asked())) throw Interrupted();
         const auto state = task.range.state(i, settings[parameters::motion]);
@@ -31,6 +37,18 @@ void Dumps::dump(const Cell& cell, const Task& task) {
         if (!task.options.dump_contacts.empty() || !task.options.dump_distances.empty())
             if (const auto found = result.download_contacts(); rows)
                 rows.rows(task.range.first() + i, found, columns);
+        if (!task.options.dump_surfaces.empty())
+            if (const auto found = result.download_contacts(); surfaces_) {
+                const auto& [x, y, z] = result.origin;
+                const auto world = oracle::world_of(task.scene, counted_from({x, y, z}, *task.range.frame(i)),
+                                                    geometry.precision, geometry.origin);
+                surfaces.add(static_cast<std::uint32_t>(task.range.first() + i), found,
+                             surfaces_of(task.scene, world, geometry.precision, result.origin, found));
+            }
+    }
+    if (surfaces_) {
+        surfaces_.write(surfaces_vtp(surfaces));
+        surfaces_.finish();
     }
     pairs_.finish();
     distances_.finish();
