@@ -61,7 +61,21 @@ void cross_edge(const Rationals& p, const Rationals& q, const mpq_class& at_p, c
     polygon.push_back(added(p, at_p / (at_p - at_q), minus(q, p)));
 }
 
-/// The polygon of a tetrahedron where the function is 0. A corner where it is 0 is below.
+/// Whether the plane where the function is 0 goes through the tetrahedron, or through a face with the rest
+/// above: of two that share a face, one has it.
+bool is_cut(const Points<mpz_class>& solid, const Linear& function) {
+    bool is_above = false, is_below = false;
+    for (const auto& corner : solid) (function(rational(corner)) > 0 ? is_above : is_below) = true;
+    return is_above && is_below;
+}
+
+/// The direction along which polygons in faces belong to the tetrahedron above (rules/pressure.clh).
+bool is_downward(const Rationals& n) {
+    return n[0] + mpq_class(0.7548776662466927) * n[1] + mpq_class(0.5698402909980532) * n[2] < 0;
+}
+
+/// The polygon of a tetrahedron where the function is 0, which goes through it. A corner where it is 0 is
+/// below.
 Polygon plane_cut(const Points<mpz_class>& solid, const Linear& function) {
     Polygon below, above, polygon;
     for (const auto& corner : solid)
@@ -119,7 +133,10 @@ std::optional<ExactPolygon> exact_polygon(const TetraCorners& a, const std::arra
     if (dot(normal, normal) == 0 || is_against(normal, field_a.gradient)
         || is_against(minus(Rationals{0, 0, 0}, normal), field_b.gradient))
         return std::nullopt;
-    auto polygon = plane_cut(lattice.a, {normal, field_a.at, field_a.value - field_b(field_a.at)});
+    Linear excess{normal, field_a.at, field_a.value - field_b(field_a.at)};
+    if (is_downward(normal)) excess = {minus(Rationals{0, 0, 0}, normal), excess.at, -excess.value};
+    if (!is_cut(lattice.a, excess) || !is_cut(lattice.b, excess)) return std::nullopt;
+    auto polygon = plane_cut(lattice.a, excess);
     for (unsigned face = 0; face < 4; ++face) polygon = clipped(polygon, outside(lattice.b, face));
     mpq_class twice = 0; // the area along the normal, which is not of length 1
     Rationals moment{0, 0, 0};

@@ -48,6 +48,45 @@ Vector<Real> zero_between(const Vector<Real>& from, const Vector<Real>& to, Real
     return from + (to - from) * (at_from / (at_from - at_to));
 }
 
+/// The pressures of solid `own` less those of the other field at its corners; 0 within rounding.
+template<class Real>
+std::array<Real, 4> excess(const ReferencePair<Real>& pair, unsigned own,
+                           const std::array<Real, 4>& pressures, const LinearField<Real>& other) {
+    std::array<Real, 4> result;
+    for (unsigned i = 0; i < 4; ++i) {
+        const auto offset = (pair.world[own][i] - pair.world[1 - own][0]) * pair.scale;
+        const Real there = other.at(offset);
+        const auto& g = other.gradient;
+        const Real terms = taxicab<Real>({g[0] * offset[0], g[1] * offset[1], g[2] * offset[2]});
+        const Real error =
+            16 * unit_roundoff<Real> * ((std::abs(pressures[i]) + std::abs(other.at_first)) + terms);
+        const Real difference = pressures[i] - there;
+        result[i] = std::abs(difference) <= error ? 0 : difference;
+    }
+    return result;
+}
+
+template<class Real>
+void turn_signs(std::array<Real, 4>& values) {
+    for (Real& value : values) value = 0 - value;
+}
+
+template<class Real>
+bool is_downward(const Vector<Real>& n) {
+    const Real xy = n[0] + Real(0.7548776662466927) * n[1];
+    return xy + Real(0.5698402909980532) * n[2] < 0;
+}
+
+template<class Real>
+bool is_cut(const std::array<Real, 4>& values) {
+    return std::ranges::min(values) <= 0 && std::ranges::max(values) > 0;
+}
+
+template<class Real>
+bool is_in_plane(const std::array<Real, 4>& values, unsigned face) {
+    return std::ranges::all_of(face_corners[face], [&](unsigned corner) { return values[corner] == 0; });
+}
+
 /// The polygon where a linear function is 0, which has these values at the corners.
 template<class Real>
 Polygon<Real> plane_cut(Corners<Real> corners, std::array<Real, 4> values) {
@@ -58,7 +97,6 @@ Polygon<Real> plane_cut(Corners<Real> corners, std::array<Real, 4> values) {
             std::swap(corners[i], corners[j]);
         }
     const auto below = std::ranges::count_if(values, [](Real value) { return value <= 0; });
-    if (below == 0 || below == 4) return {};
     static const std::vector<std::array<unsigned, 2>> edges[] = {
         {{0, 1}, {0, 2}, {0, 3}}, {{0, 2}, {0, 3}, {1, 3}, {1, 2}}, {{0, 3}, {1, 3}, {2, 3}}};
     Polygon<Real> polygon;
@@ -134,13 +172,13 @@ PressurePolygon<Real> pressure_polygon(const ReferencePair<Real>& pair) {
     PressurePolygon<Real> result;
     result.normal = unit(difference);
     if (!is_along(a.gradient, result.normal) || !is_along(b.gradient, result.normal * Real(-1))) return {};
-    std::array<Real, 4> excess;
-    for (unsigned i = 0; i < 4; ++i)
-        excess[i] = pressures[0][i]
-                    - (b.at_first + dot(b.gradient, (pair.world[0][i] - pair.world[1][0]) * pair.scale));
-    result.corners = plane_cut(pair.solids[0].corners, excess);
+    auto at_a = excess(pair, 0, pressures[0], b), at_b = excess(pair, 1, pressures[1], a);
+    turn_signs(is_downward(result.normal) ? at_a : at_b); // the second is b's pressure less a's
+    if (!is_cut(at_a) || !is_cut(at_b)) return {};
+    result.corners = plane_cut(pair.solids[0].corners, at_a);
     for (unsigned face = 0; face < 4 && !result.corners.empty(); ++face)
-        result.corners = clipped(std::move(result.corners), pair.solids[1], face);
+        if (!is_in_plane(at_b, face))
+            result.corners = clipped(std::move(result.corners), pair.solids[1], face);
     if (result.corners.empty()) return {};
     measure(result);
     merge_equal(result.corners);

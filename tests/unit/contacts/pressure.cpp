@@ -319,6 +319,47 @@ TYPED_TEST(ContactsPressureOf, EqualFieldsMakeNone) {
     }
 }
 
+/// The area of the polygons of all pairs of two lists.
+template<class Real>
+double area_of(const std::vector<GivenTetrahedron<Real>>& a, const std::vector<GivenTetrahedron<Real>>& b) {
+    double area = 0;
+    for (const auto& p : a)
+        for (const auto& q : b)
+            for (const auto& row : rows_of(p, q)) area += widened(row).depth;
+    return area;
+}
+
+// A face that two tetrahedra share lies in the plane of equal pressure, whichever of the bodies they belong
+// to.
+TYPED_TEST(ContactsPressureOf, APolygonInASharedFaceIsOfOneOfTheTwo) {
+    using Tetra = GivenTetrahedron<TypeParam>;
+    const Tetra level{{{{0.24, 0, 0}, {0.24, 0.125, 0}, {0.24, 0.125, 0.125}, {0.365, 0.125, 0.125}}},
+                      15,
+                      {5e6, 5e6, 5e6, 5e6}};
+    const Tetra before{
+        {{{0, 0, 0}, {0.25, 0, 0}, {0.25, 0.25, 0}, {0.25, 0.25, 0.25}}}, 15, {1e7, 5e6, 5e6, 5e6}};
+    const Tetra behind{
+        {{{0.25, 0, 0}, {0.25, 0.25, 0}, {0.25, 0.25, 0.25}, {0.5, 0.25, 0.25}}}, 15, {5e6, 5e6, 5e6, 0}};
+    const double area = area_of<TypeParam>({before, behind}, {level});
+    EXPECT_NEAR(area, 0.0066125, 1e-6);
+    EXPECT_EQ((area_of<TypeParam>({level}, {before, behind})), area);
+    // The cut one is in the other order of corners, and the face is slanted.
+    Random random(8);
+    for (int i = 0; i < 200; ++i) {
+        const auto turn = random.rotation();
+        const Vector place(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+        const auto placed = [&](const Tetra& given) {
+            auto result = given;
+            for (auto& corner : result.corners) {
+                const Vector p = turn * Vector(corner[0], corner[1], corner[2]) + place;
+                for (unsigned k = 0; k < 3; ++k) corner[k] = static_cast<TypeParam>(p[k]);
+            }
+            return result;
+        };
+        EXPECT_NEAR(area_of<TypeParam>({placed(before), placed(behind)}, {placed(level)}), area, 1e-5) << i;
+    }
+}
+
 // Two slabs that overlap by a half: the polygon is the triangle in the middle.
 TEST(ContactsPressure, OfTwoFieldsThatRiseTowardsEachOtherItIsInTheMiddle) {
     const GivenTetrahedron<double> a{{{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}}}, 15, {0, 0, 0, 2}};
