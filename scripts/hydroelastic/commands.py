@@ -65,15 +65,15 @@ def compare_precision(name, precision, comparison, theirs, ours):
     """Prints the result of a pair of meshes. Returns (whether it is as it should be, polygons of one side)."""
     frames = [comparison.frame(i, *both) for i, both in enumerate(zip(theirs, ours))]
     counts = numpy.sum([frame.counts for frame in frames], axis=0)
-    area, force, torque = numpy.max([frame.differences for frame in frames], axis=0)
+    area, force, torque, of_lengths = numpy.max([frame.differences for frame in frames], axis=0)
     singles = [single for frame in frames for single in frame.singles]
     print(
         f"{name:15} {precision:7} {len(frames):5} {counts[0]:9,} {counts[1]:9,} {counts[2]:7,} {counts[3]:7,}"
-        f"   {area:.1e} {force:.1e} {torque:.1e}",
+        f"   {area:.1e} {force:.1e} {torque:.1e} {of_lengths:.1e}",
         flush=True,
     )
     tell_reasons(singles)
-    is_right = max(area, force, torque) <= TOLERANCE[precision]
+    is_right = max(area, force, of_lengths) <= TOLERANCE[precision]
     return is_right and all(single.reason != "unexplained" for single in singles), singles
 
 
@@ -106,7 +106,9 @@ def compare(options):
     if wrong := [name for name in names if name not in scenes.PAIRS]:
         raise BadData(f"unknown pair '{wrong[0]}'; expected some of {','.join(scenes.PAIRS)}")
     print("                                polygons          idle               largest relative difference")
-    print("meshes          prec.   poses     Drake    tandem   Drake  tandem   area    force   torque")
+    print(
+        "meshes          prec.   poses     Drake    tandem   Drake  tandem   area    force   torque  of lengths"
+    )
     is_right, rows = True, []
     for name in names:
         with tempfile.TemporaryDirectory() as folder:

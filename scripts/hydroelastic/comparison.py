@@ -29,7 +29,7 @@ class Single:
 @dataclasses.dataclass
 class Frame:
     """One pose's result. counts: of both sides, polygons and idle ones. differences:
-    relative, of area, force and torque."""
+    those of Comparison.differences()."""
 
     counts: tuple
     differences: tuple
@@ -77,15 +77,14 @@ class Comparison:
         return exact.Pair(*parts, self._rounding)
 
     def differences(self, frame, theirs, ours):
+        """Relative, of area, force and torque, and of torque over the sum of the torques' lengths."""
         origin = self._poses[frame, 0, :3]
-        modulus = max(field.max() for field in self._fields)
-        sums = theirs.without(self.idle(theirs)).wrench(origin), ours.without(self.idle(ours)).wrench(origin)
-        force = WITHOUT_FORCE * modulus * sums[0][0]
-        least = 0.0, force, force * self._shapes[0].radius
-        return tuple(
-            numpy.linalg.norm(a - b) / max(numpy.linalg.norm(a), floor, numpy.finfo(float).tiny)
-            for a, b, floor in zip(*sums, least)
-        )
+        one, other = (polygons.without(self.idle(polygons)).wrench(origin) for polygons in (theirs, ours))
+        force = WITHOUT_FORCE * max(field.max() for field in self._fields) * one[0]
+        torque = force * self._shapes[0].radius
+        apart = [numpy.linalg.norm(a - b) for a, b in zip(one[:3], other[:3])]
+        sizes = [max(numpy.linalg.norm(a), floor) for a, floor in zip(one, (0.0, force, torque, torque))]
+        return tuple(a / size if size > 0 else a for a, size in zip((*apart, apart[2]), sizes))
 
     def frame(self, frame, theirs, ours):
         """Compares Drake's polygons of a frame with tandem's."""

@@ -25,10 +25,12 @@ class Polygons:
         return Polygons(*(getattr(self, field.name)[~rows] for field in dataclasses.fields(self)))
 
     def wrench(self, origin):
-        """(area, force on A, torque on A about a point), sums over the polygons."""
+        """(area, force on A, torque on A about a point), sums over the polygons, and the sum of the torques'
+        lengths."""
         force = (self.area * self.pressure)[:, None] * self.normal
         torque = numpy.cross(self.centroid - origin, force)
-        return self.area.sum(), force.sum(axis=0), torque.sum(axis=0)
+        lengths = numpy.linalg.norm(torque, axis=1).sum()
+        return self.area.sum(), force.sum(axis=0), torque.sum(axis=0), lengths
 
 
 def rotation(pose):
