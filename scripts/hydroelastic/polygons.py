@@ -5,6 +5,8 @@ import dataclasses
 
 import numpy
 
+NEAR = 1e-6  # m: farther outside a tetrahedron is no point of it
+
 
 @dataclasses.dataclass
 class Polygons:
@@ -52,6 +54,7 @@ class Cells:
         corner = shape.vertices[shape.tetrahedra]
         value = field[shape.tetrahedra]
         self._first = corner[:, 0]
+        self._low, self._high = corner.min(axis=1) - NEAR, corner.max(axis=1) + NEAR
         self._inverse = numpy.linalg.inv((corner[:, 1:] - corner[:, :1]).transpose(0, 2, 1))
         self._gradient = numpy.einsum("ti,tij->tj", value[:, 1:] - value[:, :1], self._inverse)
         self._scale = numpy.linalg.norm(self._gradient, axis=1).max()
@@ -62,8 +65,9 @@ class Cells:
         points, gradients = (points - pose[:3]) @ turn, gradients @ turn
         found = numpy.empty(len(points), "i8")
         for i, (point, gradient) in enumerate(zip(points, gradients)):
-            weights = numpy.einsum("tij,tj->ti", self._inverse, point - self._first)
+            near = numpy.flatnonzero(((self._low <= point) & (point <= self._high)).all(axis=1))
+            weights = numpy.einsum("tij,tj->ti", self._inverse[near], point - self._first[near])
             depth = numpy.minimum(weights.min(axis=1), 1 - weights.sum(axis=1))
-            wrong = numpy.abs(self._gradient - gradient).max(axis=1) > 1e-9 * self._scale
-            found[i] = numpy.argmax(numpy.where(wrong, depth - 1e3, depth))
+            wrong = numpy.abs(self._gradient[near] - gradient).max(axis=1) > 1e-9 * self._scale
+            found[i] = near[numpy.argmax(numpy.where(wrong, depth - 1e3, depth))]
         return found
