@@ -25,14 +25,19 @@ class Single:
     share: float
     reason: str
 
+    @property
+    def is_excused(self):
+        return self.share <= exact.LEAST_AREA or self.reason in (exact.IDLE, exact.LIMIT)
+
 
 @dataclasses.dataclass
 class Frame:
-    """One pose's result. counts: of both sides, polygons and idle ones. differences:
-    those of Comparison.differences()."""
+    """One pose's result. counts: of both sides, polygons and idle ones. differences: those of
+    Comparison.differences(). judged: the same without polygons of one side at the limit of angle."""
 
     counts: tuple
     differences: tuple
+    judged: tuple
     singles: list
 
 
@@ -79,7 +84,7 @@ class Comparison:
     def differences(self, frame, theirs, ours):
         """Relative, of area, force and torque, and of torque over the sum of the torques' lengths."""
         origin = self._poses[frame, 0, :3]
-        one, other = (polygons.without(self.idle(polygons)).wrench(origin) for polygons in (theirs, ours))
+        one, other = (polygons.wrench(origin) for polygons in (theirs, ours))
         force = WITHOUT_FORCE * max(field.max() for field in self._fields) * one[0]
         torque = force * self._shapes[0].radius
         apart = [numpy.linalg.norm(a - b) for a, b in zip(one[:3], other[:3])]
@@ -96,8 +101,19 @@ class Comparison:
             for side, polygons, rows in (("Drake", theirs, left), ("tandem", ours, right))
             for row in rows
         ]
-        idle = int(self.idle(theirs).sum()), int(self.idle(ours).sum())
-        return Frame((len(theirs), len(ours), *idle), self.differences(frame, theirs, ours), singles)
+        idle = self.idle(theirs), self.idle(ours)
+        pressing = theirs.without(idle[0]), ours.without(idle[1])
+        limit = [single.pair for single in singles if single.reason == exact.LIMIT]
+        judged = (
+            polygons.without(numpy.array([tuple(pair) in limit for pair in polygons.pair.tolist()], bool))
+            for polygons in pressing
+        )
+        return Frame(
+            (len(theirs), len(ours), int(idle[0].sum()), int(idle[1].sum())),
+            self.differences(frame, *pressing),
+            self.differences(frame, *judged),
+            singles,
+        )
 
     def _single(self, frame, side, polygons, row, largest):
         pair, area = tuple(polygons.pair[row].tolist()), float(polygons.area[row])

@@ -9,6 +9,7 @@ import numpy
 COSINE_OF_LIMIT = math.cos(5 * math.pi / 8)
 DRAKES_TOLERANCE = 1e-14  # m: Drake joins corners that are nearer
 LEAST_AREA = 1e-12  # of the largest polygon
+IDLE, LIMIT = "in a boundary face, at pressure 0", "at the limit of angle"  # reasons
 
 
 def rational(array):
@@ -135,11 +136,11 @@ class Pair:
         if length(self.difference) <= rounding * (self.a.size + self.b.size):
             return "of equal gradients"
         if any(abs(cosine - COSINE_OF_LIMIT) <= rounding for cosine in self.cosines()):
-            return "at the limit of angle"
+            return LIMIT
         grown = self.polygon(-rounding)
         if area(grown) <= LEAST_AREA * largest:
             return "small"
         if area(self.polygon(rounding)) == 0:
-            return "in a boundary face, at pressure 0" if self._is_idle else "in a face"
+            return IDLE if self._is_idle else "in a face"
         here = self.polygon()
         return "of near corners" if distinct(here, 2 * DRAKES_TOLERANCE) < len(here) else "unexplained"
