@@ -46,6 +46,9 @@ void check_output(const Settings& settings) {
     if (settings[parameters::output] == Output::contacts && rule == ContactRule::none)
         throw InputError("setting output=contacts needs a contact rule; leave contact_rule out, or choose "
                          "output=pairs");
+    if (settings[parameters::output] == Output::wrenches && !needs_pressures(rule))
+        throw InputError("setting output=wrenches needs contact_rule=pressure; set it, or choose "
+                         "output=contacts");
     if (settings[parameters::output] != Output::distances) return;
     if (!has_near_pairs(rule))
         throw InputError("setting output=distances needs contact_rule=distance; set it, or choose "

@@ -170,6 +170,7 @@ FrameResult Session::finished(FrameResult result) {
     for (auto* device : devices()) device->check_guards();
     for (std::size_t axis = 0; axis < 3; ++axis)
         result.origin[axis] += origin_[static_cast<Eigen::Index>(axis)];
+    result.has_points = settings()[parameters::output] != Output::wrenches;
     is_placed_ = true;
     if (centred_)
         for (auto& part : result.parts) part = owning_part(std::move(part), centred_);
@@ -217,7 +218,9 @@ AlgorithmStages Traversal::build(const BuildContext& context) const { return do_
 
 SettingTexts with_rule_of_output(SettingTexts given) {
     const auto output = given.find("output");
-    if (output != given.end() && output->second == "distances") given.try_emplace("contact_rule", "distance");
+    if (output == given.end()) return given;
+    if (output->second == "distances") given.try_emplace("contact_rule", "distance");
+    if (output->second == "wrenches") given.try_emplace("contact_rule", "pressure");
     return given;
 }
 

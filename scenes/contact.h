@@ -4,6 +4,7 @@
 #include <array>
 #include <compare>
 #include <cstdint>
+#include <vector>
 
 namespace tandem {
 
@@ -29,6 +30,13 @@ struct ContactPoint {
         normal{};                  ///< x, y, z; of length 1, within rounding
     double depth = 0;              ///< in the scene's unit of length; an area in its square
     double pressure = 0;           ///< at the centroid; 0 with other rules
+};
+
+/// The corners of polygons of equal pressure, one polygon after the other.
+struct ContactSurfaces {
+    std::vector<std::array<double, 3>> corners; ///< in world coordinates
+    std::vector<double> pressures;              ///< at the corners
+    std::vector<std::uint64_t> ends;            ///< polygon i has corners ends[i - 1] (or 0) to ends[i] - 1
 };
 
 /// The point of b, where the contact rule measures distances.

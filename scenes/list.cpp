@@ -84,9 +84,10 @@ void refuse_other_files(std::string_view specification) {
                                          specification));
 }
 
-/// Connects the meshes of a kind anew, where that may differ from how the kind connects them.
+/// Connects the meshes of a kind anew, where that may differ from how the kind connects them, and gives them
+/// fields.
 void connect(Scene& scene, const MeshReading& reading) {
-    if (reading.duplicates == Duplicates::merge && !reading.weld) return;
+    if (reading.duplicates == Duplicates::merge && !reading.weld && !reading.pressure) return;
     for (auto& mesh : scene.meshes) complete_mesh(mesh, mesh.name, reading);
 }
 

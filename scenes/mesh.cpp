@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <span>
+#include <utility>
 
 namespace tandem {
 
@@ -92,7 +93,6 @@ void flag_boundary(Mesh& mesh, std::span<const Face> faces, std::span<const Dupl
 
 /// Fills welded, merged and boundary.
 void connect(Mesh& mesh, const std::string& source, const MeshReading& reading) {
-    mesh.reading = reading;
     mesh.welded.clear();
     mesh.merged.clear();
     mesh.findings.welded = 0;
@@ -153,9 +153,18 @@ void complete_mesh(Mesh& mesh, const std::string& source, const MeshReading& rea
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
         for (const auto vertex : mesh.tetrahedra[t])
             if (vertex >= mesh.vertices.size()) refuse_vertex(mesh, source, t, vertex);
+    if (reading.pressure) checked_pressure(*reading.pressure);
+    const auto wanted = reading; // it may be the mesh's own
+    // An earlier call made the field, maybe for another boundary.
+    if (std::exchange(mesh.reading.pressure, std::nullopt)) mesh.pressures.clear();
     check_pressures(mesh, source);
     count_flawed(mesh);
-    connect(mesh, source, reading);
+    connect(mesh, source, wanted);
+    mesh.reading = wanted;
+    if (wanted.pressure && mesh.pressures.empty())
+        make_pressures(mesh, *wanted.pressure);
+    else
+        mesh.reading.pressure.reset();
 }
 
 std::string findings_text(const Mesh& mesh, std::string_view weld) {
@@ -175,6 +184,8 @@ std::string findings_text(const Mesh& mesh, std::string_view weld) {
     add(found.other_cells, "volume cells that are not tetrahedra are left out");
     if (const double most = most_pressure_on_boundary(mesh); most > 0)
         parts.push_back(fmt::format("the pressure is not 0 on the whole boundary, but up to {}", most));
+    if (mesh.reading.pressure && std::ranges::all_of(mesh.pressures, [](double p) { return p == 0; }))
+        parts.emplace_back("no vertex lies inside, so that the pressure is 0 everywhere; refine the mesh");
     return fmt::format("{}", fmt::join(parts, "; "));
 }
 

@@ -41,7 +41,8 @@ struct Mesh {
     /// field.
     std::vector<double> pressures{};
     MeshFindings findings{};
-    MeshReading reading{}; ///< how complete_mesh connected it
+    /// How complete_mesh connected it. Its pressure is none if the mesh has a field of its own.
+    MeshReading reading{};
 };
 
 /// The vertex's number in the topology: boundary faces, duplicates and setting self.
@@ -57,12 +58,12 @@ bool is_merged(const Mesh& mesh, std::uint32_t tetrahedron);
 
 /// Checks indices and coordinates (throws InputError naming `source`), then fills all other members but the
 /// name and the findings of readers. Volume signs come from det[b-a, c-a, d-a] in double. Throws InputError
-/// for duplicates that `reading` rejects, and for an impossible tolerance. A completed mesh can be completed
-/// again with another reading.
+/// for duplicates that `reading` rejects, and for an impossible tolerance or modulus. A completed mesh can be
+/// completed again with another reading, which replaces a field that the last one made.
 void complete_mesh(Mesh& mesh, const std::string& source, const MeshReading& reading = {});
 
-/// One line about duplicates, coincident vertices and cells that were left out; empty when there are none.
-/// `weld` is how the caller's users ask for welding of equal positions.
+/// One line about duplicates, coincident vertices, cells that were left out and an odd pressure field; empty
+/// when there are none. `weld` is how the caller's users ask for welding of equal positions.
 std::string findings_text(const Mesh& mesh, std::string_view weld = "--weld 0");
 
 /// Counts inverted and degenerate tetrahedra; indices must be in range.

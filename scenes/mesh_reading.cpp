@@ -22,4 +22,11 @@ double checked_weld(double tolerance, std::string_view option) {
     return tolerance;
 }
 
+double checked_pressure(double modulus, std::string_view option) {
+    if (!(modulus > 0 && modulus <= most_pressure))
+        throw InputError(
+            fmt::format("{} {}: give a modulus above 0, at most {:.2g}", option, modulus, most_pressure));
+    return modulus;
+}
+
 } // namespace tandem

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <string_view>
 
@@ -26,6 +27,9 @@ struct MeshReading {
     std::optional<double> weld{};
     bool corners = false;         ///< tetrahedra of higher order become those of their corners, not an error
     bool only_tetrahedra = false; ///< other volume cells are left out, not an error
+    /// The modulus of the pressure field that meshes without one get (make_pressures). None: they stay
+    /// without.
+    std::optional<double> pressure{};
 
     bool operator==(const MeshReading&) const = default;
 };
@@ -36,5 +40,12 @@ Duplicates duplicates_named(std::string_view name, std::string_view option = "du
 /// Returns a tolerance for MeshReading::weld. Throws InputError that begins with `option` when it is negative
 /// or not finite.
 double checked_weld(double tolerance, std::string_view option = "weld");
+
+/// The largest pressure and modulus: they are numbers of single precision on devices.
+inline constexpr double most_pressure = std::numeric_limits<float>::max();
+
+/// Returns a modulus for MeshReading::pressure. Throws InputError that begins with `option` unless it is
+/// above 0 and at most most_pressure.
+double checked_pressure(double modulus, std::string_view option = "pressure");
 
 } // namespace tandem

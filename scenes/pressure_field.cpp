@@ -8,14 +8,11 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <limits>
 #include <unsupported/Eigen/BVH>
 
 namespace tandem {
 
 namespace {
-
-constexpr double most_pressure = std::numeric_limits<float>::max();
 
 using Point = Eigen::Vector3d;
 using Box = Eigen::AlignedBox3d;
@@ -69,9 +66,8 @@ void for_boundary_faces(const Mesh& mesh, Visit visit) {
 
 } // namespace
 
-void make_pressures(Mesh& mesh, double modulus, const std::string& option) {
-    if (!(modulus > 0 && modulus <= most_pressure))
-        throw InputError(fmt::format("{} {}: a modulus is a finite number above 0", option, modulus));
+void make_pressures(Mesh& mesh, double modulus) {
+    checked_pressure(modulus);
     std::vector<Triangle> triangles;
     std::vector<bool> is_outside(mesh.vertices.size());
     for_boundary_faces(mesh, [&](const Tetrahedron& ids, const unsigned(&at)[3]) {
@@ -113,6 +109,11 @@ void check_pressures(const Mesh& mesh, const std::string& source) {
             throw InputError(fmt::format("{}: the pressure of vertex {} is {}; pressures are finite and not "
                                          "negative",
                                          source, v, mesh.pressures[v]));
+}
+
+std::size_t bodies_without_field(const Scene& scene) {
+    return static_cast<std::size_t>(std::ranges::count_if(
+        scene.bodies, [&](const Body& body) { return scene.meshes[body.mesh].pressures.empty(); }));
 }
 
 } // namespace tandem

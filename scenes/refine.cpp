@@ -111,6 +111,10 @@ Mesh refined_once(const Mesh& mesh) {
     fine.vertices = mesh.vertices;
     for (const auto key : keys)
         fine.vertices.push_back(0.5 * (mesh.vertices[key >> 32] + mesh.vertices[key & most]));
+    fine.pressures = mesh.pressures;
+    for (const auto key : keys)
+        if (!mesh.pressures.empty())
+            fine.pressures.push_back(0.5 * (mesh.pressures[key >> 32] + mesh.pressures[key & most]));
     fine.tetrahedra.reserve(mesh.tetrahedra.size() * children.size());
     fine.boundary.reserve(mesh.tetrahedra.size() * children.size());
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {

@@ -109,8 +109,8 @@ struct SceneKind {
 std::span<const SceneKind> scene_kinds();
 
 /// "NAME", "NAME:par=value,par=value", or the path of a scene description (.json) or of a recording
-/// (.frames). `reading` applies to mesh files, and its duplicates and welding to all meshes. Throws
-/// InputError.
+/// (.frames). `reading` applies to mesh files, and its duplicates, welding and pressure to all
+/// meshes. Throws InputError.
 Scene make_scene(std::string_view specification, const MeshReading& reading = {});
 
 /// A scene with one body per mesh file. poses[i] belongs to files[i]; missing poses are the identity.

@@ -138,6 +138,24 @@ def gmsh(path, points, tets, kind=4):
     return path
 
 
+def cubes():
+    """Points and tetrahedra of 2 x 2 x 2 cubes. The only inner vertex is number 13, the middle."""
+    points = [(i, j, k) for i in range(3) for j in range(3) for k in range(3)]
+    paths = list(itertools.permutations(((1, 0, 0), (0, 1, 0), (0, 0, 1))))
+    tets = []
+    for cube in (point for point in points if max(point) < 2):
+        for path in paths:
+            corners = list(itertools.accumulate((cube, *path), lambda p, q: tuple(map(sum, zip(p, q)))))
+            tets.append([points.index(corner) for corner in corners])
+    return points, tets
+
+
+def node_data(values, name="pressure"):
+    """$NodeData of a Gmsh file: a number at each vertex."""
+    rows = "".join(f"{node} {value!r}\n" for node, value in enumerate(values, 1))
+    return f'$NodeData\n1\n"{name}"\n1\n0\n3\n0\n1\n{len(values)}\n{rows}$EndNodeData\n'
+
+
 class Case(unittest.TestCase):
     """Base of all test cases: a folder with a valid mesh, and readers of the program's output."""
 

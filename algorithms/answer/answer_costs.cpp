@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cost models of the kernels in digest.cl, sort.cl and closest.cl.
+// Cost models of the kernels in digest.cl, sort.cl, closest.cl and wrenches.cl.
 #include "algorithms/bodies/cost.h"
 
 namespace tandem {
@@ -28,7 +28,9 @@ std::vector<KernelCost> answer_costs(const SceneFacts& scene) {
             {"place_contacts", {}, {}, "nothing: contacts are not counted in advance"},
             {"find_closest", {}, {}, "nothing: distances before the reduction are not counted"},
             {"keep_closest", {}, {}, "nothing: a word for each place of the table"},
-            {"count_closest", {}, {}, "nothing: two words"}};
+            {"count_reduced", {}, {}, "nothing: two words"},
+            {"add_wrenches", {}, {}, "nothing: polygons before the reduction are not counted"},
+            {"write_wrenches", {}, {}, "nothing: a word for each place of the table"}};
 }
 
 } // namespace tandem

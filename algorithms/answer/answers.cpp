@@ -291,6 +291,19 @@ void HostPart::add_contacts(const AnswerBuffers& buffers, std::uint64_t count) {
     device.download(buffers.contacts.buffer(contact_values), std::span(values_).subspan(first));
 }
 
+void HostPart::set_contact(std::size_t index, std::uint32_t feature, const std::array<double, 8>& values) {
+    ids_[index][1] = feature;
+    const auto put = [&]<class Real>(Real) {
+        std::array<Real, 8> row;
+        std::ranges::transform(values, row.begin(), [](double value) { return static_cast<Real>(value); });
+        std::memcpy(values_.data() + index * sizeof(row), row.data(), sizeof(row));
+    };
+    if (tools_->in_double())
+        put(double());
+    else
+        put(float());
+}
+
 void HostPart::keep_contacts(std::span<const std::size_t> kept) {
     if (ids_.empty()) return;
     const auto bytes = values_.size() / ids_.size();

@@ -97,9 +97,10 @@ public:
     void append_contacts(std::vector<ContactPoint>& contacts) const override;
     void count_by_body(std::vector<std::uint64_t>& counts) const override;
 
-    std::size_t contact_count() const { return ids_.size(); }
     /// Removes all contacts but these, which are in ascending order.
     void keep_contacts(std::span<const std::size_t> kept);
+    /// Replaces feature and values of a contact; the values are numbers of the cell's precision.
+    void set_contact(std::size_t index, std::uint32_t feature, const std::array<double, 8>& values);
 
 private:
     std::shared_ptr<const AnswerTools> tools_;

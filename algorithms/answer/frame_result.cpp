@@ -85,7 +85,7 @@ std::vector<ContactPoint> FrameResult::download_contacts() const {
     std::vector<ContactPoint> sorted(found.size());
     for_blocks(found.size(), [&](std::size_t i) {
         sorted[i] = found[keys[i].index];
-        for (std::size_t k = 0; k < 3; ++k) sorted[i].point[k] += origin[k];
+        for (std::size_t k = 0; has_points && k < 3; ++k) sorted[i].point[k] += origin[k];
     });
     return sorted;
 }

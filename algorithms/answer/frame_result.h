@@ -110,6 +110,7 @@ struct FrameResult : FrameCounts {
     std::map<std::string_view, std::uint64_t> work; ///< by Counter; empty unless Session::count_work(true)
     std::optional<Digest> summed;                   ///< digest of the pairs with output=digest
     std::array<double, 3> origin{};                 ///< of contact points in the parts (Session::origin)
+    bool has_points = true; ///< whether contacts are points: false with output=wrenches
     std::vector<std::shared_ptr<const AnswerPart>> parts; ///< empty unless output=pairs
 
     /// False with output=count or output=digest, which store no pairs.
@@ -126,7 +127,9 @@ struct FrameResult : FrameCounts {
     Digest contact_digest() const;
     /// Sorted pairs; empty unless output=pairs.
     std::vector<Pair> download() const;
-    /// Contacts in world coordinates, sorted by pair and feature; empty unless output=pairs.
+    /// Contacts in world coordinates, sorted by pair and feature; empty unless output=pairs. With
+    /// output=wrenches a row for each body pair: `point` is the force on body a, `normal` the torque about
+    /// its pose, `depth` the area, `feature` the number of polygons.
     std::vector<ContactPoint> download_contacts() const;
 };
 

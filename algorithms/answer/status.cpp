@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/answer/status.h"
 
+#include "algorithms/answer/wrench_sums.h"
+#include "base/error.h"
+
 #include <fmt/format.h>
 
 namespace tandem {
@@ -8,7 +11,7 @@ namespace tandem {
 namespace {
 
 /// By number of the bound.
-constexpr std::array<std::string_view, EXCEEDED_WORDS> bounds{
+constexpr std::array<std::string_view, EXCEEDED_UNITS> bounds{
     "the queries of a body pair", "the node pairs in a queue", "the body pairs that have contacts"};
 
 } // namespace
@@ -53,6 +56,7 @@ void Status::write(const Words& words) {
 void Status::read() {
     const StageScope scope(device_, Stage::read);
     device_.download(buffer_, std::as_writable_bytes(std::span(words_)));
+    if (words_[STATUS_EXCEEDED + EXCEEDED_UNITS] != 0) throw InputError(std::string(wrench_too_large));
     for (std::size_t i = 0; i < bounds.size(); ++i)
         if (words_[STATUS_EXCEEDED + i] != 0)
             throw DeviceError(

@@ -50,6 +50,7 @@ ContactSettings contact_settings_of(const Settings& settings) {
     result.walked = walked_of(settings);
     if (has_near_pairs(result.rule)) result.margin = settings[parameters::margin];
     result.closest = settings[parameters::output] == Output::distances;
+    result.wrenches = settings[parameters::output] == Output::wrenches;
     return result;
 }
 

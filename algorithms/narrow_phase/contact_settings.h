@@ -14,8 +14,9 @@ struct ContactSettings {
     DecisionPrecision decision = DecisionPrecision::fp32;
     Walked walked = Walked::all;
     SelfPairs self = SelfPairs::off;
-    double margin = 0;    ///< of rules with TANDEM_WITHIN_MARGIN
-    bool closest = false; ///< only the contact of each body pair with the least distance (output=distances)
+    double margin = 0;     ///< of rules with TANDEM_WITHIN_MARGIN
+    bool closest = false;  ///< only the contact of each body pair with the least distance (output=distances)
+    bool wrenches = false; ///< the polygons of each body pair added up (output=wrenches)
     bool within_sphere_boxes = false; ///< only pairs of bodies whose boxes overlap (broad=sphere_boxes)
     std::size_t first_body_pair = 0;  ///< the first of these body pairs, in ascending order
     std::size_t most_body_pairs = 0;  ///< and their number at most; 0: all

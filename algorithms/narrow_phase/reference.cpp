@@ -209,23 +209,24 @@ std::vector<Contact<Real>> reference_contacts(const GivenTetrahedron<Real>& a,
 }
 
 template<class Real>
-std::vector<std::array<Real, 3>> polygon_of_equal_pressure(const GivenTetrahedron<Real>& a,
-                                                           const GivenTetrahedron<Real>& b) {
+PolygonCorners<Real> polygon_of_equal_pressure(const GivenTetrahedron<Real>& a,
+                                               const GivenTetrahedron<Real>& b) {
     if (!finite(a.corners) || !finite(b.corners)) return {};
     ReferencePair<Real> pair;
     const CanonicalPair<Real> sorted(pair, a, b);
     if (!pair.load(sorted.first.corners, sorted.second.corners)) return {};
-    auto corners = pressure_polygon(pair).corners;
-    for (auto& corner : corners) corner = corner / pair.scale + pair.origin;
-    return corners;
+    const auto polygon = pressure_polygon(pair);
+    PolygonCorners<Real> result{{}, polygon.pressures};
+    for (const auto& corner : polygon.corners) result.points.push_back(corner / pair.scale + pair.origin);
+    return result;
 }
 
 #define TANDEM_REFERENCE_IN(Real)                                                                            \
     template std::vector<Contact<Real>> reference_contacts(const GivenTetrahedron<Real>&,                    \
                                                            const GivenTetrahedron<Real>&, ContactCounts&,    \
                                                            const ContactSettings&);                          \
-    template std::vector<std::array<Real, 3>> polygon_of_equal_pressure(const GivenTetrahedron<Real>&,       \
-                                                                        const GivenTetrahedron<Real>&);
+    template PolygonCorners<Real> polygon_of_equal_pressure(const GivenTetrahedron<Real>&,                   \
+                                                            const GivenTetrahedron<Real>&);
 TANDEM_REFERENCE_IN(float)
 TANDEM_REFERENCE_IN(double)
 #undef TANDEM_REFERENCE_IN

@@ -41,10 +41,17 @@ std::vector<Contact<Real>> reference_contacts(const GivenTetrahedron<Real>& a,
                                               const GivenTetrahedron<Real>& b, ContactCounts& counts,
                                               const ContactSettings& settings = {});
 
-/// The corners of the polygon of a pair by rule pressure, in world coordinates, in the order of the polygon;
-/// empty where reference_contacts() with that rule makes no row of a pair that meets.
+/// The corners of a polygon, in its order, in world coordinates, and the pressures there.
 template<class Real>
-std::vector<std::array<Real, 3>> polygon_of_equal_pressure(const GivenTetrahedron<Real>& a,
-                                                           const GivenTetrahedron<Real>& b);
+struct PolygonCorners {
+    std::vector<std::array<Real, 3>> points;
+    std::vector<Real> pressures;
+};
+
+/// The polygon of a pair by rule pressure; no corners where reference_contacts() with that rule makes no row
+/// of a pair that meets.
+template<class Real>
+PolygonCorners<Real> polygon_of_equal_pressure(const GivenTetrahedron<Real>& a,
+                                               const GivenTetrahedron<Real>& b);
 
 } // namespace tandem

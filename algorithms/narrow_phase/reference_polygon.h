@@ -10,6 +10,7 @@ namespace tandem::narrow_phase {
 template<class Real>
 struct PressurePolygon {
     std::vector<Vector<Real>> corners; ///< distinct, in the order of the polygon
+    std::vector<Real> pressures;       ///< at the corners, not scaled
     Vector<Real> centroid{}, normal{};
     Real area = 0;     ///< in local units
     Real pressure = 0; ///< at the centroid, not scaled

@@ -113,8 +113,9 @@ enum class Output {
     pairs, ///< candidate pairs and their contacts
     count,
     digest,
-    contacts, ///< as pairs, without the tetrahedra that cannot make contacts (walked_of)
-    distances ///< as contacts, of which each body pair keeps the one with the least distance
+    contacts,  ///< as pairs, without the tetrahedra that cannot make contacts (walked_of)
+    distances, ///< as contacts, of which each body pair keeps the one with the least distance
+    wrenches   ///< as contacts, the polygons of each body pair added up to force, torque and area
 };
 
 /// Whether an answer has pairs, and contacts with a contact rule.
@@ -122,7 +123,7 @@ constexpr bool has_pairs(Output output) { return output != Output::count && outp
 
 /// Whether an answer may lack candidate pairs that make no contacts.
 constexpr bool leaves_out_pairs(Output output) {
-    return output == Output::contacts || output == Output::distances;
+    return output == Output::contacts || output == Output::distances || output == Output::wrenches;
 }
 
 /// Rule that makes contacts of a colliding pair: one of contact_rules.clh, or none.

@@ -31,17 +31,29 @@ constexpr std::array pressure_columns{
     RowColumn{"area", "area", "length squared", "of the polygon", depth_of},
     RowColumn{"pressure", "pressure", "that of the meshes' field", "at the centroid", pressure_of}};
 
+Numbers count_of(const ContactPoint& row, Room& room) {
+    room[0] = row.feature;
+    return std::span(room).first(1);
+}
+
+constexpr std::array wrench_columns{
+    RowColumn{"force", "fx,fy,fz", "pressure times length squared", "on body a", point_of},
+    RowColumn{"torque", "mx,my,mz", "pressure times length cubed", "on body a, about its pose", normal_of},
+    RowColumn{"area", "area", "length squared", "of all polygons of the two bodies", depth_of},
+    RowColumn{"polygons", "polygons", "1", "their number", count_of}};
+
 } // namespace
 
-std::span<const RowColumn> row_columns(ContactRule rule) {
+std::span<const RowColumn> row_columns(ContactRule rule, Output output) {
+    if (output == Output::wrenches) return wrench_columns;
     if (has_near_pairs(rule)) return distance_columns;
     if (needs_pressures(rule)) return pressure_columns;
     return contact_columns;
 }
 
-std::string row_header(ContactRule rule) {
+std::string row_header(std::span<const RowColumn> columns) {
     std::string header = "frame,body_a,tet_a,body_b,tet_b";
-    for (const auto& column : row_columns(rule)) header.append(",").append(column.csv);
+    for (const auto& column : columns) header.append(",").append(column.csv);
     return header + '\n';
 }
 

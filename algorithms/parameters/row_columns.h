@@ -20,10 +20,11 @@ struct RowColumn {
     std::span<const double> (*values)(const ContactPoint& row, std::array<double, 3>& room);
 };
 
-/// The columns of a rule's rows, in the order of files. Files and their headers follow from them.
-std::span<const RowColumn> row_columns(ContactRule rule);
+/// The columns of the rows of a rule with an output, in the order of files. Files and their headers follow
+/// from them.
+std::span<const RowColumn> row_columns(ContactRule rule, Output output);
 
 /// The header of a file with a line for each row: the frame, the pair, and the columns.
-std::string row_header(ContactRule rule);
+std::string row_header(std::span<const RowColumn> columns);
 
 } // namespace tandem

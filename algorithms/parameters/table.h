@@ -189,12 +189,14 @@ inline constexpr Setting<Output> output{
      {"count", Output::count},
      {"digest", Output::digest},
      {"contacts", Output::contacts},
-     {"distances", Output::distances}},
+     {"distances", Output::distances},
+     {"wrenches", Output::wrenches}},
     "OUTPUT",
     "output of a walk: pairs: candidate pairs, and contacts; count, digest: only these of the pairs; "
     "contacts: as pairs, without interior tetrahedra if the contact rule makes contacts of boundary faces "
     "only, so that they are the same; distances: as contacts, but of each body pair only the least distance, "
-    "with contact_rule=distance"};
+    "with contact_rule=distance; wrenches: as contacts, but of each body pair only force, torque and area, "
+    "with contact_rule=pressure"};
 inline constexpr Setting<AnswerOrder> order{
     "order",
     AnswerOrder::any,

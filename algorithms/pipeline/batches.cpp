@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/pipeline/batches.h"
 
+#include "algorithms/answer/wrench_sums.h"
 #include "algorithms/parameters/table.h"
 
 #include <algorithm>
 #include <deque>
 #include <fmt/format.h>
 #include <map>
+#include <unordered_map>
 
 namespace tandem {
 
@@ -53,6 +55,66 @@ std::uint64_t keep_closest(std::span<const std::shared_ptr<HostPart>> parts) {
     return closest.size();
 }
 
+/// The poses of all bodies on the device, 12 numbers each.
+template<class Real>
+std::vector<std::array<Real, 12>> downloaded_poses(const Bodies& bodies) {
+    const auto row = pose_reals(bodies.geometry());
+    std::vector<Real> numbers(row * bodies.count());
+    const StageScope scope(bodies.device(), Stage::read);
+    bodies.device().download(bodies.poses(), std::as_writable_bytes(std::span(numbers)));
+    std::vector<std::array<Real, 12>> poses(bodies.count());
+    for (std::size_t body = 0; body < poses.size(); ++body)
+        std::copy_n(numbers.begin() + static_cast<std::ptrdiff_t>(body * row), 12, poses[body].begin());
+    return poses;
+}
+
+/// Adds up the polygons of each body pair, as WrenchStage does. Returns how many body pairs there are.
+template<class Real>
+std::uint64_t add_wrenches(const Bodies& bodies, std::span<const std::shared_ptr<HostPart>> parts) {
+    struct Place {
+        WrenchSums<Real> sums;
+        Pair pair;
+        std::size_t part, contact;
+    };
+    const auto arms = body_arms(bodies.scene());
+    const auto poses = downloaded_poses<Real>(bodies);
+    std::unordered_map<std::uint32_t, std::uint32_t> indices; // by the numbers of the scene
+    for (std::uint32_t i = 0; i < bodies.count(); ++i) indices[number_of(bodies.scene(), i)] = i;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, Place> found;
+    const auto real = [](const std::array<double, 3>& p) {
+        return std::array{static_cast<Real>(p[0]), static_cast<Real>(p[1]), static_cast<Real>(p[2])};
+    };
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+        std::vector<ContactPoint> contacts;
+        parts[part]->append_contacts(contacts);
+        for (std::size_t i = 0; i < contacts.size(); ++i) {
+            const auto& one = contacts[i];
+            const auto a = indices.at(one.pair.body_a), b = indices.at(one.pair.body_b);
+            const auto [best, is_first] =
+                found.try_emplace({a, b}, Place{{arms[a], arms[b], poses[a]}, one.pair, part, i});
+            best->second.sums.add(real(one.point), real(one.normal), static_cast<Real>(one.depth),
+                                  static_cast<Real>(one.pressure));
+            if (one.pair < best->second.pair) {
+                best->second.pair = one.pair;
+                best->second.part = part;
+                best->second.contact = i;
+            }
+        }
+    }
+    std::vector<std::vector<std::size_t>> kept(parts.size());
+    for (const auto& [pair, place] : found) {
+        const auto v = place.sums.values();
+        parts[place.part]->set_contact(place.contact, place.sums.polygons(),
+                                       {v[0], v[1], v[2], v[3], v[4], v[5], v[6], 0});
+        kept[place.part].push_back(place.contact);
+    }
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+        std::ranges::sort(kept[part]);
+        parts[part]->keep_contacts(kept[part]);
+    }
+    return found.size();
+}
+
 class BatchRun {
 public:
     BatchRun(Pipeline& pipeline, const FrameInput* input, std::optional<std::span<const BodyPair>> given);
@@ -70,6 +132,7 @@ private:
     void finish_part();
     void make_contacts(HostPart& host, std::uint64_t pairs);
     void add_counts();
+    void reduce();
     std::uint32_t items_of(const Batch& batch) const;
 
     Pipeline& pipeline_;
@@ -169,10 +232,11 @@ void BatchRun::make_contacts(HostPart& host, std::uint64_t pairs) {
         const auto end = std::min(pairs, first + step);
         status.write(words);
         const ContactRows kept(*answer_);
-        const auto& closest = pipeline_.closest;
-        pipeline_.contacts->launch(answer_->pairs.buffer(), closest ? closest->source(*answer_) : kept, first,
-                                   end, status);
-        if (closest) closest->launch(*answer_, kept, pairs_.size(), status);
+        const auto& reduction = pipeline_.reduction;
+        const bool reduces = reduction && reduction->joins_rows();
+        pipeline_.contacts->launch(answer_->pairs.buffer(), reduces ? reduction->source(*answer_) : kept,
+                                   first, end, status);
+        if (reduces) reduction->launch(*answer_, kept, pairs_.size(), status);
         status.read();
         const auto made = status.counter(STATUS_CONTACTS);
         const auto capacity = answer_->contacts.capacity();
@@ -187,7 +251,7 @@ void BatchRun::make_contacts(HostPart& host, std::uint64_t pairs) {
         host.add_contacts(*answer_, made);
         result_.contacts += made;
         words = status.words();
-        for (const auto counter : {STATUS_CONTACTS, STATUS_CLOSEST}) words[counter] = words[counter + 1] = 0;
+        for (const auto counter : {STATUS_CONTACTS, STATUS_REDUCED}) words[counter] = words[counter + 1] = 0;
         first = end;
     }
 }
@@ -237,6 +301,16 @@ void BatchRun::run_batch(const Batch& batch) {
     split(batch, ways);
 }
 
+/// Reduces the contacts of all parts.
+void BatchRun::reduce() {
+    if (pipeline_.reduction->joins_rows())
+        result_.contacts = keep_closest(finished_);
+    else if (pipeline_.tools->in_double())
+        result_.contacts = add_wrenches<double>(*pipeline_.bodies, finished_);
+    else
+        result_.contacts = add_wrenches<float>(*pipeline_.bodies, finished_);
+}
+
 FrameResult BatchRun::run(std::uint64_t batches) {
     result_.body_pairs = pairs_.size();
     if (pipeline_.output == Output::digest) result_.summed.emplace();
@@ -247,9 +321,9 @@ FrameResult BatchRun::run(std::uint64_t batches) {
         run_batch(batch);
     }
     pipeline_.compile(false);
-    // A pair has at most one of the contacts of which some are kept.
-    const auto contacts = pipeline_.closest ? result_.count : result_.contacts;
-    if (pipeline_.closest) result_.contacts = keep_closest(finished_);
+    // A pair has at most one of the contacts that are reduced.
+    const auto contacts = pipeline_.reduction ? result_.count : result_.contacts;
+    if (pipeline_.reduction) reduce();
     fits_ = result_.count <= answer_->pairs.capacity()
             && (!pipeline_.makes_contacts() || contacts <= answer_->contacts.capacity());
     result_.batches = std::max<std::uint64_t>(result_.batches, 1);

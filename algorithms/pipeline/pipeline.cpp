@@ -109,7 +109,7 @@ Pipeline::Pipeline(const Traversal& traversal, Device& on, const Scene& scene, S
         is_published(settings) ? ContactStage::Launches::at_once : ContactStage::Launches::apart;
     if (contacting)
         contacts = std::make_unique<ContactStage>(*bodies, contact_settings_of(settings), shape, launches);
-    if (output == Output::distances) closest = std::make_unique<ClosestStage>(*bodies, shape);
+    if (contacting) reduction = contact_reduction(output, *bodies, shape);
     if (settings[parameters::order] == AnswerOrder::canonical)
         order = std::make_unique<OrderStage>(*bodies, shape, contacting);
     tools = std::make_shared<AnswerTools>(bodies, shape, contacting);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "algorithms/answer/answers.h"
-#include "algorithms/answer/closest_stage.h"
+#include "algorithms/answer/contact_reductions.h"
 #include "algorithms/answer/order_stage.h"
 #include "algorithms/answer/status.h"
 #include "algorithms/broad_phase/body_pairs.h"
@@ -52,9 +52,9 @@ struct Pipeline {
     AlgorithmStages stages;
     std::unique_ptr<BodyPairs> body_pairs;
     Status status;
-    std::unique_ptr<ContactStage> contacts; ///< null if no contacts are made
-    std::unique_ptr<ClosestStage> closest;  ///< null unless output=distances
-    std::unique_ptr<OrderStage> order;      ///< null unless order=canonical
+    std::unique_ptr<ContactStage> contacts;      ///< null if no contacts are made
+    std::unique_ptr<ContactReduction> reduction; ///< null for outputs that keep all contacts
+    std::unique_ptr<OrderStage> order;           ///< null unless order=canonical
     std::shared_ptr<const AnswerTools> tools;
     std::shared_ptr<AnswerPool> answers;
 };

@@ -97,9 +97,9 @@ void ResidentSession::walk(const AnswerBuffers& answer) {
     if (pipeline_.order) pipeline_.order->sort_pairs(answer, pipeline_.status);
     if (!pipeline_.makes_contacts()) return;
     const auto kept = pipeline_.order ? pipeline_.order->unsorted(answer) : ContactRows(answer);
-    const auto made = pipeline_.closest ? pipeline_.closest->source(answer) : kept;
+    const auto made = pipeline_.reduction ? pipeline_.reduction->source(answer) : kept;
     pipeline_.contacts->launch(answer.pairs.buffer(), made, 0, answer.pairs.capacity(), pipeline_.status);
-    if (pipeline_.closest) pipeline_.closest->launch(answer, kept, task.pair_capacity, pipeline_.status);
+    if (pipeline_.reduction) pipeline_.reduction->launch(answer, kept, task.pair_capacity, pipeline_.status);
     if (pipeline_.order) pipeline_.order->sort_contacts(answer, pipeline_.status);
 }
 

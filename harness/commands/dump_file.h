@@ -17,6 +17,8 @@ public:
     /// which stay as they are.
     DumpFile(const std::string& path, std::string header) : file_(path), header_(std::move(header)) {}
 
+    /// Before the first line.
+    void set_header(std::string header) { header_ = std::move(header); }
     explicit operator bool() const { return static_cast<bool>(file_); }
     /// Appends one line for each, in the given order. Coordinates are in the scene's units, as the shortest
     /// decimals that read back as the same numbers. Throws OutputError when the file cannot be written.

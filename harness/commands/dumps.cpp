@@ -1,25 +1,34 @@
 // SPDX-License-Identifier: MIT
 #include "harness/commands/dumps.h"
 
+#include "algorithms/bodies/origin.h"
 #include "harness/plans/cell_session.h"
 #include "harness/plans/rank_team.h"
 #include "harness/profile/timeline/trace_frame.h"
 #include "harness/program/interrupt.h"
+#include "harness/verify/contact_surfaces.h"
+#include "scenes/export/surfaces.h"
 
 namespace tandem {
 
 Dumps::Dumps(const RunOptions& options, bool writes)
     : pairs_(writes ? options.dump_pairs : std::string(), pairs_header),
-      contacts_(writes ? options.dump_contacts : std::string(), row_header(ContactRule::opposing)),
-      distances_(writes ? options.dump_distances : std::string(), row_header(ContactRule::distance)),
+      contacts_(writes ? options.dump_contacts : std::string(), ""),
+      distances_(writes ? options.dump_distances : std::string(), ""),
+      surfaces_(writes ? options.dump_surfaces : std::string()),
       trace_(writes ? options.trace : std::string()) {}
 
 void Dumps::dump(const Cell& cell, const Task& task) {
     const auto session = prepare_session(cell, task.scene);
-    const auto columns = row_columns(session->settings()[parameters::contact_rule]);
+    const auto& settings = session->settings();
+    const auto columns = row_columns(settings[parameters::contact_rule], settings[parameters::output]);
+    contacts_.set_header(row_header(columns));
+    distances_.set_header(row_header(columns));
+    SurfaceFrames surfaces;
+    const auto geometry = geometry_of(settings);
     for (std::size_t i = 0; i < task.range.size(); ++i) {
         if (decided(cell.team, Interrupt::asked())) throw Interrupted();
-        const auto state = task.range.state(i, session->settings()[parameters::motion]);
+        const auto state = task.range.state(i, settings[parameters::motion]);
         const auto result = session->run(FrameView(state.input()).checked());
         // Collective: all ranks download; only rank 0 writes.
         if (!task.options.dump_pairs.empty())
@@ -28,6 +37,18 @@ void Dumps::dump(const Cell& cell, const Task& task) {
         if (!task.options.dump_contacts.empty() || !task.options.dump_distances.empty())
             if (const auto found = result.download_contacts(); rows)
                 rows.rows(task.range.first() + i, found, columns);
+        if (!task.options.dump_surfaces.empty())
+            if (const auto found = result.download_contacts(); surfaces_) {
+                const auto& [x, y, z] = result.origin;
+                const auto world = oracle::world_of(task.scene, counted_from({x, y, z}, *task.range.frame(i)),
+                                                    geometry.precision, geometry.origin);
+                surfaces.add(static_cast<std::uint32_t>(task.range.first() + i), found,
+                             surfaces_of(task.scene, world, geometry.precision, result.origin, found));
+            }
+    }
+    if (surfaces_) {
+        surfaces_.write(surfaces_vtp(surfaces));
+        surfaces_.finish();
     }
     pairs_.finish();
     distances_.finish();

@@ -7,8 +7,8 @@
 
 namespace tandem {
 
-/// The files of --dump-pairs, --dump-contacts, --dump-distances and --trace, which have the answer and the
-/// timeline of one cell.
+/// The files of --dump-pairs, --dump-contacts, --dump-distances, --dump-surfaces and --trace, which have the
+/// answer and the timeline of one cell.
 class Dumps {
 public:
     /// Makes sure that the files can be written. Without `writes`, as on all ranks but the first, the other
@@ -24,6 +24,7 @@ private:
     void dump(const Cell& cell, const Task& task);
 
     DumpFile pairs_, contacts_, distances_;
+    WholeFile surfaces_; ///< written at the end, because a .vtp file begins with the number of its polygons
     TimelineFile trace_;
 };
 

@@ -15,6 +15,7 @@
 #include "scenes/export/geometry.h"
 #include "scenes/export/glb.h"
 #include "scenes/export/vtk.h"
+#include "scenes/pressure_field.h"
 
 #include <cstdlib>
 #include <filesystem>
@@ -60,6 +61,9 @@ std::size_t export_vtu(const ExportOptions& options, const Scene& scene,
                        std::span<const std::size_t> frames) {
     std::optional<FrameContacts> finder;
     if (options.contacts) finder.emplace(options.device, scene);
+    if (const auto without = bodies_without_field(scene); without > 0 && without < scene.bodies.size())
+        print_message("tandem: scene {}: {} of {} bodies have no pressure field, so that --vtu writes none\n",
+                      scene.name, without, scene.bodies.size());
     make_folder(options.vtu);
     const auto chunks = chunks_of(scene);
     std::vector<TimedFile> bodies, contacts;

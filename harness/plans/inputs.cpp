@@ -145,6 +145,14 @@ void check_rule_outputs(const RunOptions& options, const Settings& settings) {
                                      settings.text("contact_rule")));
     if (!options.dump_distances.empty() && !has_near_pairs(rule))
         throw InputError("--dump-distances needs contact_rule=distance; set it, or use --dump-contacts");
+    if (options.dump_surfaces.empty()) return;
+    if (!needs_pressures(rule) || settings[parameters::output] == Output::wrenches)
+        throw InputError(
+            "--dump-surfaces needs contact_rule=pressure, and no output=wrenches; set the rule, or "
+            "use --dump-contacts");
+    if (geometry_of(settings).placement == Placement::exact)
+        throw InputError("--dump-surfaces takes rounded vertices, which placement=exact does not have; leave "
+                         "placement out");
 }
 
 /// The same for what the cell's output leaves out.
@@ -171,8 +179,8 @@ void check_cell_outputs(const RunOptions& options, const Cell& cell) {
 
 void check_outputs(const RunOptions& options, std::span<const Cell> cells) {
     std::set<std::filesystem::path> paths;
-    for (const auto* path :
-         {&options.out, &options.dump_pairs, &options.dump_contacts, &options.dump_distances, &options.trace})
+    for (const auto* path : {&options.out, &options.dump_pairs, &options.dump_contacts,
+                             &options.dump_distances, &options.dump_surfaces, &options.trace})
         if (!path->empty() && !paths.insert(followed(*path)).second)
             throw InputError(fmt::format("{}: named for two outputs; choose another file", *path));
     const bool dumps = options.has_dumps();

@@ -21,7 +21,7 @@ const Texts product_fields{"scenes", "frames", "algorithms", "presets", "setting
 
 /// Options with a value of `tandem run` that a plan may give.
 const Texts valued{"noise",      "seconds", "repeat",  "seed",       "truth", "truth-contacts",
-                   "degenerate", "memory",  "timeout", "duplicates", "weld"};
+                   "degenerate", "memory",  "timeout", "duplicates", "weld",  "pressure"};
 const Texts flags{"no-check", "no-count", "check-afresh", "isolate", "corners", "only-tetrahedra"};
 
 /// The string, or a number as a user would write it.

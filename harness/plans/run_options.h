@@ -39,6 +39,7 @@ struct RunOptions { // NOLINT(clang-analyzer-optin.performance.Padding): in the 
     std::string out;                        ///< append records to this file; empty: none are written
     std::string dump_pairs, dump_contacts;  ///< CSV files of the first finished cell; empty: none
     std::string dump_distances;             ///< the same
+    std::string dump_surfaces;              ///< VTK file of the first finished cell; empty: none
     std::string trace;                      ///< timeline of one frame of the first finished cell; empty: none
     std::vector<std::string> require;       ///< devices or backends whose absence is a failure
     bool check = true;                      ///< compare answers with the reference
@@ -56,7 +57,8 @@ struct RunOptions { // NOLINT(clang-analyzer-optin.performance.Padding): in the 
     bool quiet = false;
 
     bool has_dumps() const {
-        return !(dump_pairs.empty() && dump_contacts.empty() && dump_distances.empty());
+        return !(dump_pairs.empty() && dump_contacts.empty() && dump_distances.empty()
+                 && dump_surfaces.empty());
     }
 };
 

@@ -9,6 +9,7 @@
 #include "base/standard_streams.h"
 #include "base/text_lines.h"
 #include "base/error.h"
+#include "scenes/pressure_field.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -71,9 +72,27 @@ std::string scene_text(const Scene& scene, const FrameRange& range) {
     return text;
 }
 
+namespace {
+
+/// Says how many bodies make no polygons of equal pressure, if a cell asks for these and they can be: a scene
+/// without any field is an error of each cell.
+void report_missing_fields(const Task& task) {
+    const auto without = bodies_without_field(task.scene);
+    const auto has_field = [](const Mesh& mesh) { return !mesh.pressures.empty(); };
+    const auto asks = [](const Cell& cell) { return has_polygons(cell.settings); };
+    if (without > 0 && std::ranges::any_of(task.scene.meshes, has_field)
+        && std::ranges::any_of(task.cells, asks))
+        print_message("tandem: scene {}: {} of {} bodies have no pressure field and make no polygons "
+                      "(--pressure MODULUS gives them one)\n",
+                      task.scene.name, without, task.scene.bodies.size());
+}
+
+} // namespace
+
 void print_scene(const Task& task) {
     put_text(scene_text(task.scene, task.range));
     report_findings(task.scene);
+    report_missing_fields(task);
     std::set<std::string> reasons;
     for (const auto& cell : task.cells)
         reasons.insert(why_nothing_meets(task.scene, cell.settings[parameters::self]));

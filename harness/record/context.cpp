@@ -38,6 +38,11 @@ const Fields<Scene>& reading_fields() {
          "--weld: vertices at most this far apart are one for boundary faces, duplicates and setting self; "
          "null: no welding",
          [](auto& s) { return s.reading.weld ? Json(*s.reading.weld) : Json(); }},
+        {"pressure",
+         nullable(number_from(0)),
+         "--pressure: modulus of the pressure fields that meshes without one got; null: none",
+         [](auto& s) { return s.reading.pressure ? Json(*s.reading.pressure) : Json(); },
+         {.since = 4}},
         {"welded", count(), "vertices that were welded to an earlier one", found(&MeshFindings::welded)},
         {"coincident", count(), "vertices of mesh files at the position of an earlier one",
          found(&MeshFindings::coincident)},

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "harness/verify/reference.h"
 
+#include "algorithms/answer/wrench_sums.h"
+#include "algorithms/bodies/pack.h"
 #include "algorithms/narrow_phase/reference.h"
 #include "algorithms/bodies/self_pairs.h"
 #include "algorithms/bodies/shift.h"
@@ -95,14 +97,44 @@ void test_all(const Bounds<Real>& a, const Bounds<Real>& b, Hit hit) {
 template<class Real>
 using PairContact = std::pair<Pair, Contact<Real>>;
 
+template<class Real>
+std::pair<std::uint32_t, std::uint32_t> bodies_of(const PairContact<Real>& contact) {
+    return {contact.first.body_a, contact.first.body_b};
+}
+
 /// Leaves of each body pair the contact with the least distance; of equal ones that of the first pair.
 template<class Real>
 void keep_closest(std::vector<PairContact<Real>>& contacts) {
-    const auto bodies = [](const PairContact<Real>& c) { return std::pair(c.first.body_a, c.first.body_b); };
     std::ranges::sort(contacts, {},
-                      [&](const auto& c) { return std::tuple(bodies(c), c.second.depth, c.first); });
-    const auto rest = std::ranges::unique(contacts, {}, bodies);
+                      [](const auto& c) { return std::tuple(bodies_of(c), c.second.depth, c.first); });
+    const auto rest = std::ranges::unique(contacts, {}, bodies_of<Real>);
     contacts.erase(rest.begin(), rest.end());
+}
+
+/// The polygons of each body pair added up, in the order of their pairs. `input`: the frame of the contacts.
+template<class Real>
+std::vector<PairContact<Real>> wrenches_of(std::vector<PairContact<Real>> contacts, const Scene& scene,
+                                           const Geometry& geometry, const FrameInput& input) {
+    const auto moved = centred(scene, geometry.origin);
+    const auto arms = body_arms(moved ? *moved : scene);
+    const auto frame = moved ? shifted(*moved, input.frame) : input.frame;
+    std::ranges::sort(contacts, {}, [](const auto& c) { return std::pair(bodies_of(c), c.first); });
+    std::vector<PairContact<Real>> result;
+    for (auto first = contacts.begin(); first != contacts.end();) {
+        const auto& pair = first->first;
+        std::array<Real, 12> pose;
+        std::ranges::transform(
+            pose_rows(scene.bodies[pair.body_a].deformable ? Pose{} : frame.poses[pair.body_a]), pose.begin(),
+            [](double number) { return static_cast<Real>(number); });
+        WrenchSums<Real> sums(arms[pair.body_a], arms[pair.body_b], pose);
+        auto one = first;
+        for (; one != contacts.end() && bodies_of(*one) == bodies_of(*first); ++one)
+            sums.add(one->second.point, one->second.normal, one->second.depth, one->second.pressure);
+        const auto v = sums.values();
+        result.push_back({pair, {sums.polygons(), {v[0], v[1], v[2]}, {v[3], v[4], v[5]}, v[6], 0}});
+        first = one;
+    }
+    return result;
 }
 
 /// Order-free.
@@ -122,7 +154,11 @@ class ContactMaker {
 public:
     ContactMaker(const Scene& scene, const std::vector<Bounds<Real>>& bounds, const ContactSettings& settings,
                  ReferenceAnswer& answer)
-        : scene_(scene), bounds_(bounds), settings_(settings), answer_(answer) {}
+        : scene_(scene),
+          bounds_(bounds),
+          settings_(settings),
+          answer_(answer),
+          reduces_(settings.closest || settings.wrenches) {}
 
     /// Of some of the pairs.
     void add(std::span<const Pair> pairs) {
@@ -134,9 +170,9 @@ public:
                 found.emplace_back(p, contact);
         }
         if (settings_.closest) keep_closest(found);
-        const auto digest = settings_.closest ? Digest{} : digest_of_contacts<Real>(found);
+        const auto digest = reduces_ ? Digest{} : digest_of_contacts<Real>(found);
         const std::scoped_lock lock(mutex_);
-        if (settings_.closest) closest_.insert(closest_.end(), found.begin(), found.end());
+        if (reduces_) reduced_.insert(reduced_.end(), found.begin(), found.end());
         answer_.contact_digest += digest;
         answer_.degenerate += counts.degenerate;
         answer_.without_boundary += counts.without_boundary;
@@ -146,9 +182,10 @@ public:
     }
 
     /// Call it after all pairs.
-    void finish() {
-        keep_closest(closest_);
-        answer_.contact_digest += digest_of_contacts<Real>(closest_);
+    void finish(const Geometry& geometry, const FrameInput& input) {
+        if (settings_.closest) keep_closest(reduced_);
+        if (settings_.wrenches) reduced_ = wrenches_of(std::move(reduced_), scene_, geometry, input);
+        answer_.contact_digest += digest_of_contacts<Real>(reduced_);
         answer_.contacts = answer_.contact_digest.count;
     }
 
@@ -171,7 +208,8 @@ private:
     const ContactSettings& settings_;
     ReferenceAnswer& answer_;
     std::mutex mutex_;
-    std::vector<PairContact<Real>> closest_; ///< with settings.closest, of the parts so far
+    bool reduces_;                           ///< to one row for each body pair
+    std::vector<PairContact<Real>> reduced_; ///< of the parts so far
 };
 
 /// Whether each mesh has a boundary face.
@@ -287,7 +325,7 @@ ReferenceAnswer answer_in(const Scene& scene, const FrameInput& input, const Geo
         const auto all = std::span<const Pair>(answer.pairs);
         maker.add(all.subspan(i * part, std::min(part, all.size() - i * part)));
     });
-    maker.finish();
+    maker.finish(geometry, input);
     return answer;
 }
 

@@ -37,7 +37,10 @@ std::string References::cache_key(const Key& key) const {
         static_cast<int>(geometry.placement), static_cast<int>(geometry.origin),
         geometry.margin > 0 ? fmt::format(", margin {}", geometry.margin) : "",
         static_cast<int>(contacts.rule), static_cast<int>(contacts.decision),
-        static_cast<int>(contacts.walked), contacts.closest ? ", closest" : "",
+        static_cast<int>(contacts.walked),
+        contacts.closest    ? ", closest"
+        : contacts.wrenches ? ", wrenches"
+                            : "",
         contacts.self == SelfPairs::off ? "" : fmt::format(", self {}", static_cast<int>(contacts.self)),
         contacts.within_sphere_boxes ? fmt::format(", within boxes of spheres from {} at most {}",
                                                    contacts.first_body_pair, contacts.most_body_pairs)

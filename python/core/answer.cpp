@@ -69,10 +69,11 @@ std::vector<ContactPoint> Answer::contacts() const {
     const auto rule = collider_->settings()[parameters::contact_rule];
     if (rule == ContactRule::none)
         throw InputError("setting contact_rule=none makes no contacts; make the collider without it");
-    if (has_near_pairs(rule))
+    if (has_near_pairs(rule) || needs_pressures(rule))
         throw InputError(
-            fmt::format("setting contact_rule={} makes distances, not contacts; call distances()",
-                        collider_->settings().text("contact_rule")));
+            fmt::format("setting contact_rule={} makes {}", collider_->settings().text("contact_rule"),
+                        has_near_pairs(rule) ? "distances, not contacts; call distances()"
+                                             : "polygons, not contacts; call surfaces() or wrenches()"));
     return result_.download_contacts();
 }
 
@@ -86,22 +87,55 @@ std::vector<ContactPoint> Answer::distances() const {
     return result_.download_contacts();
 }
 
+std::vector<ContactPoint> Answer::polygons() const {
+    const auto lock = collider_->lock();
+    check_pairs_kept();
+    const auto& settings = collider_->settings();
+    if (!has_polygons(settings) || settings[parameters::output] == Output::wrenches)
+        throw InputError(fmt::format("settings contact_rule={} and output={} make no polygons; make the "
+                                     "collider with contact_rule=\"pressure\" and output=\"contacts\"",
+                                     settings.text("contact_rule"), settings.text("output")));
+    return result_.download_contacts();
+}
+
+ContactSurfaces Answer::surfaces() const {
+    const auto rows = polygons();
+    const auto lock = collider_->lock();
+    return surfaces_of(collider_->scene(), world("surfaces(corners=True)"),
+                       geometry_of(collider_->settings()).precision, result_.origin, rows);
+}
+
+std::vector<ContactPoint> Answer::wrenches() const {
+    const auto lock = collider_->lock();
+    check_pairs_kept();
+    if (collider_->settings()[parameters::output] != Output::wrenches)
+        throw InputError(fmt::format("setting output={} adds no wrenches up; make the collider with "
+                                     "output=\"wrenches\"",
+                                     collider_->settings().text("output")));
+    return result_.download_contacts();
+}
+
+oracle::World Answer::world(const char* asks) const {
+    const auto geometry = geometry_of(collider_->settings());
+    if (geometry.placement == Placement::exact)
+        throw InputError(fmt::format("setting placement=exact has no rounded vertices, which {} takes; make "
+                                     "the collider without it",
+                                     asks));
+    const auto& [x, y, z] = result_.origin;
+    return frame_ ? oracle::world_of(collider_->scene(), counted_from({x, y, z}, *frame_), geometry.precision,
+                                     geometry.origin)
+                  : collider_->world_of(number_, asks);
+}
+
 std::vector<Pair> Answer::meeting() const {
     std::vector<Pair> found;
     oracle::World world;
     {
         const auto lock = collider_->lock();
         check_pairs_kept();
-        const auto geometry = geometry_of(collider_->settings());
-        if (geometry.placement == Placement::exact)
-            throw InputError("setting placement=exact has no rounded vertices, which meeting() decides; make "
-                             "the collider without it");
+        world = this->world("meeting()");
         found = result_.download();
         if (found.empty()) return found;
-        const auto& [x, y, z] = result_.origin;
-        world = frame_ ? oracle::world_of(collider_->scene(), counted_from({x, y, z}, *frame_),
-                                          geometry.precision, geometry.origin)
-                       : collider_->world_of(number_);
     }
     return meeting_of(world, found);
 }
@@ -145,7 +179,7 @@ Rows pairs(const Answer& answer) {
     return owned_array<std::int32_t, 4>(std::move(found));
 }
 
-/// Views of the columns of one array of records: pairs, features, points, normals, depths.
+/// Views of the columns of one array of records: pairs, features, points, normals, depths, pressures.
 template<auto which>
 nb::tuple contacts(const Answer& answer) {
     auto found = [&] {
@@ -164,7 +198,19 @@ nb::tuple contacts(const Answer& answer) {
         nb::ndarray<nb::numpy, std::uint32_t, nb::shape<-1>>(&first.feature, {count}, owner, {words}),
         Vectors(first.point.data(), {count, 3}, owner, {reals, 1}),
         Vectors(first.normal.data(), {count, 3}, owner, {reals, 1}),
-        nb::ndarray<nb::numpy, double, nb::shape<-1>>(&first.depth, {count}, owner, {reals}));
+        nb::ndarray<nb::numpy, double, nb::shape<-1>>(&first.depth, {count}, owner, {reals}),
+        nb::ndarray<nb::numpy, double, nb::shape<-1>>(&first.pressure, {count}, owner, {reals}));
+}
+
+/// Corners, pressures there, and the ends of polygons.
+nb::tuple surfaces(const Answer& answer) {
+    auto found = [&] {
+        const nb::gil_scoped_release released;
+        return answer.surfaces();
+    }();
+    return nb::make_tuple(owned_array<double, 3>(std::move(found.corners)),
+                          owned_array<double, 1>(std::move(found.pressures)),
+                          owned_array<std::uint64_t, 1>(std::move(found.ends)));
 }
 
 nb::ndarray<nb::array_api, std::int32_t, nb::shape<-1, 4>> pairs_on_device(nb::handle self) {
@@ -208,6 +254,9 @@ void bind_answer(nb::module_& module) {
         .def("meeting", &pairs<&Answer::meeting>)
         .def("contacts", &contacts<&Answer::contacts>)
         .def("distances", &contacts<&Answer::distances>)
+        .def("polygons", &contacts<&Answer::polygons>)
+        .def("surfaces", &surfaces)
+        .def("wrenches", &contacts<&Answer::wrenches>)
         .def("pairs_on_device", &pairs_on_device);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "harness/verify/contact_surfaces.h"
 #include "python/core/collider.h"
 
 namespace tandem::python {
@@ -31,6 +32,12 @@ public:
     /// Contacts of a rule that measures distances. Throws InputError also for other rules; contacts() for
     /// this.
     std::vector<ContactPoint> distances() const;
+    /// Polygons of equal pressure; throws InputError also for other rules and with output=wrenches.
+    std::vector<ContactPoint> polygons() const;
+    /// Their corners. Needs the frame as meeting().
+    ContactSurfaces surfaces() const;
+    /// The rows of output=wrenches. Throws InputError with other outputs.
+    std::vector<ContactPoint> wrenches() const;
     /// Those of pairs() whose tetrahedra meet in the frame (meeting_of). A frame in memory of a device is
     /// read back from what the last run left there. Throws InputError also if another run has followed that
     /// one, and with placement=exact, whose vertices have no such numbers.
@@ -51,6 +58,9 @@ private:
     void check_current() const;
     /// The same, and if the settings keep no pairs.
     void check_pairs_kept() const;
+    /// The tetrahedra that the kernels had, relative to the answer's origin. `asks`: the function that needs
+    /// them. Throws InputError if the frame is overwritten, and with placement=exact. Needs the lock.
+    oracle::World world(const char* asks) const;
 
     std::shared_ptr<Collider> collider_;
     FrameResult result_;

@@ -14,7 +14,9 @@ template<class Value, int columns>
 using HostArray =
     nanobind::ndarray<const Value, nanobind::shape<-1, columns>, nanobind::c_contig, nanobind::device::cpu>;
 
-using Points = HostArray<double, 3>;         ///< one row per vertex
+using Points = HostArray<double, 3>; ///< one row per vertex
+using Numbers =                      ///< one per vertex
+    nanobind::ndarray<const double, nanobind::shape<-1>, nanobind::c_contig, nanobind::device::cpu>;
 using Corners = HostArray<std::uint32_t, 4>; ///< one row per tetrahedron
 using Poses = HostArray<double, 7>;          ///< one row per body: tx ty tz qw qx qy qz
 

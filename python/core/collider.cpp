@@ -191,11 +191,13 @@ CollideRun Collider::run_frames(const Frames& frames,
             frames_};
 }
 
-oracle::World Collider::world_of(std::uint64_t number) const {
+oracle::World Collider::world_of(std::uint64_t number, const char* asks) const {
     const auto* const bodies = session_->bodies();
     if (number != frames_ || bodies == nullptr)
-        throw InputError("meeting() needs the frame, which was in memory of the device and is overwritten by "
-                         "a later run; call meeting() before the next run, or give arrays in host memory");
+        throw InputError(
+            fmt::format("{0} needs the frame, which was in memory of the device and is overwritten "
+                        "by a later run; call {0} before the next run, or give arrays in host memory",
+                        asks));
     return world_on_device(*bodies);
 }
 

@@ -83,7 +83,7 @@ public:
     std::vector<std::uintptr_t> addresses();
     /// Corners of the frame of run `number` in memory of the device, as kernels had them, by a download.
     /// Needs the lock. Throws InputError if a later run has overwritten them.
-    oracle::World world_of(std::uint64_t number) const;
+    oracle::World world_of(std::uint64_t number, const char* asks) const;
     /// Keeps the Python object that owns the stream alive as long as the devices.
     void set_stream_owner(nanobind::object owner) { stream_owner_ = std::move(owner); }
     /// Guards every use of the devices, also by answers. Release the interpreter's lock before the call.

@@ -27,13 +27,14 @@ Mesh completed(Mesh mesh, const std::string& name, const MeshReading& reading) {
     return mesh;
 }
 
-Mesh mesh_of(const Points& vertices, const Corners& tetrahedra, const std::string& name,
-             const MeshReading& reading) {
+Mesh mesh_of(const Points& vertices, const Corners& tetrahedra, const std::optional<Numbers>& pressures,
+             const std::string& name, const MeshReading& reading) {
     const nb::gil_scoped_release released;
     Mesh mesh;
     copy_points(vertices, mesh.vertices);
     const auto* const first = reinterpret_cast<const Tetrahedron*>(tetrahedra.data());
     mesh.tetrahedra.assign(first, first + tetrahedra.shape(0));
+    if (pressures) mesh.pressures.assign(pressures->data(), pressures->data() + pressures->shape(0));
     return completed(std::move(mesh), name, reading);
 }
 
@@ -51,9 +52,11 @@ Mesh connected(const Mesh& mesh, const MeshReading& reading) {
 
 /// For pickling: the function and its arguments that make the mesh again.
 nb::tuple reduced(nb::handle self) {
+    const nb::object modulus = self.attr("pressure");
     return nb::make_tuple(nb::module_::import_("tandem.meshes").attr("remade"),
                           nb::make_tuple(self.attr("vertices"), self.attr("tetrahedra"), self.attr("name"),
-                                         self.attr("duplicates"), self.attr("weld")));
+                                         self.attr("duplicates"), self.attr("weld"),
+                                         modulus.is_none() ? self.attr("pressures") : modulus));
 }
 
 void bind_reading(nb::module_& module) {
@@ -61,13 +64,15 @@ void bind_reading(nb::module_& module) {
                             "How a mesh is read and connected: the arguments of tandem.read_mesh.")
         .def(
             "__init__",
-            [](MeshReading* self, const std::string& duplicates, std::optional<double> weld, bool corners,
-               bool only_tetrahedra) {
+            [](MeshReading* self, const std::string& duplicates, std::optional<double> weld,
+               std::optional<double> pressure, bool corners, bool only_tetrahedra) {
                 if (weld) checked_weld(*weld);
-                new (self) MeshReading{duplicates_named(duplicates), weld, corners, only_tetrahedra};
+                if (pressure) checked_pressure(*pressure);
+                new (self)
+                    MeshReading{duplicates_named(duplicates), weld, corners, only_tetrahedra, pressure};
             },
-            nb::arg("duplicates"), nb::arg("weld").none(), nb::arg("corners") = false,
-            nb::arg("only_tetrahedra") = false);
+            nb::arg("duplicates"), nb::arg("weld").none(), nb::arg("pressure").none(),
+            nb::arg("corners") = false, nb::arg("only_tetrahedra") = false);
 }
 
 /// How a mesh was connected.
@@ -88,14 +93,28 @@ void bind_findings(nb::class_<Mesh>& mesh) {
         .def_prop_ro("findings", [](const Mesh& self) { return findings_text(self, "weld=0"); });
 }
 
+using Pressures = nb::ndarray<nb::numpy, const double, nb::shape<-1>>;
+
+void bind_field(nb::class_<Mesh>& mesh) {
+    mesh.def_prop_ro("pressures",
+                     [](nb::handle self) -> std::optional<Pressures> {
+                         const auto& values = nb::cast<const Mesh&>(self).pressures;
+                         if (values.empty()) return std::nullopt;
+                         return Pressures(values.data(), {values.size()}, self);
+                     })
+        .def_prop_ro("pressure", [](const Mesh& self) { return self.reading.pressure; });
+}
+
 void bind_mesh(nb::module_& module) {
     nb::class_<Mesh> mesh(
         module, "Mesh",
         "Checked vertices and tetrahedra: every index is in range, every coordinate is finite.\n\n"
         "vertices: (n, 3) float64, in the unit of the scene. tetrahedra: (m, 4) uint32, indices of "
         "vertices; answers number tetrahedra in this order. Both are read-only "
-        "views of the mesh's own memory. inverted and degenerate count tetrahedra of negative "
-        "and of zero volume; the mesh keeps them. duplicates and weld are those of make_mesh. merged lists "
+        "views of the mesh's own memory. pressures: (n,) float64, the pressure at each vertex, or None "
+        "without a field. inverted and degenerate count tetrahedra of negative and of zero volume; the mesh "
+        "keeps them. duplicates and weld are those of make_mesh; pressure is the modulus that made the "
+        "field, or None. merged lists "
         "duplicates of earlier tetrahedra, which are in no answer; welded has for each vertex the first of "
         "those that are one with it, or is empty; findings is one line about both and about coincident "
         "vertices, or empty.");
@@ -121,6 +140,7 @@ void bind_mesh(nb::module_& module) {
         .def_ro("inverted", &Mesh::inverted)
         .def_ro("degenerate", &Mesh::degenerate);
     bind_findings(mesh);
+    bind_field(mesh);
 }
 
 } // namespace
@@ -128,8 +148,9 @@ void bind_mesh(nb::module_& module) {
 void bind_meshes(nb::module_& module) {
     bind_reading(module);
     bind_mesh(module);
-    module.def("make_mesh", &mesh_of, nb::arg("vertices"), nb::arg("tetrahedra"), nb::arg("name"),
-               nb::arg("reading"), "Implementation of tandem.make_mesh, which checks its input.");
+    module.def("make_mesh", &mesh_of, nb::arg("vertices"), nb::arg("tetrahedra"), nb::arg("pressures").none(),
+               nb::arg("name"), nb::arg("reading"),
+               "Implementation of tandem.make_mesh, which checks its input.");
     module.def("connected", &connected, nb::arg("mesh"), nb::arg("reading"),
                "A copy of a mesh that is connected by another reading.");
     module.def(

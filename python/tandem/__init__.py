@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ._core import DeviceError, Mesh, OutOfMemory, Scene, algorithms, devices
-    from .answers import Answer, Contacts, Digest, Distances, Queued
+    from .answers import Answer, Contacts, Digest, Distances, Queued, Surfaces, Wrenches
     from .collider import Collider, Trial
     from .comparison import Comparison, compare
     from .lines import RecordError
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 _MODULES = {
     "_core": ("DeviceError", "Mesh", "OutOfMemory", "Scene", "algorithms", "devices"),
-    "answers": ("Answer", "Contacts", "Digest", "Distances", "Queued"),
+    "answers": ("Answer", "Contacts", "Digest", "Distances", "Queued", "Surfaces", "Wrenches"),
     "collider": ("Collider", "Trial"),
     "comparison": ("Comparison", "compare"),
     "frames": ("write_frames",),

@@ -27,13 +27,13 @@ def devices() -> list[dict[str, object]]:
 class MeshReading:
     """How a mesh is read and connected: the arguments of tandem.read_mesh."""
 
-    def __init__(self, duplicates: str, weld: float | None, corners: bool = False, only_tetrahedra: bool = False) -> None: ...
+    def __init__(self, duplicates: str, weld: float | None, pressure: float | None, corners: bool = False, only_tetrahedra: bool = False) -> None: ...
 
 class Mesh:
     """
     Checked vertices and tetrahedra: every index is in range, every coordinate is finite.
 
-    vertices: (n, 3) float64, in the unit of the scene. tetrahedra: (m, 4) uint32, indices of vertices; answers number tetrahedra in this order. Both are read-only views of the mesh's own memory. inverted and degenerate count tetrahedra of negative and of zero volume; the mesh keeps them. duplicates and weld are those of make_mesh. merged lists duplicates of earlier tetrahedra, which are in no answer; welded has for each vertex the first of those that are one with it, or is empty; findings is one line about both and about coincident vertices, or empty.
+    vertices: (n, 3) float64, in the unit of the scene. tetrahedra: (m, 4) uint32, indices of vertices; answers number tetrahedra in this order. Both are read-only views of the mesh's own memory. pressures: (n,) float64, the pressure at each vertex, or None without a field. inverted and degenerate count tetrahedra of negative and of zero volume; the mesh keeps them. duplicates and weld are those of make_mesh; pressure is the modulus that made the field, or None. merged lists duplicates of earlier tetrahedra, which are in no answer; welded has for each vertex the first of those that are one with it, or is empty; findings is one line about both and about coincident vertices, or empty.
     """
 
     @property
@@ -41,6 +41,9 @@ class Mesh:
 
     @property
     def tetrahedra(self) -> Annotated[NDArray[numpy.uint32], dict(shape=(None, 4), writable=False)]: ...
+
+    @property
+    def pressures(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)] | None: ...
 
     @property
     def name(self) -> str: ...
@@ -64,9 +67,12 @@ class Mesh:
     def weld(self) -> float | None: ...
 
     @property
+    def pressure(self) -> float | None: ...
+
+    @property
     def findings(self) -> str: ...
 
-def make_mesh(vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], tetrahedra: Annotated[NDArray[numpy.uint32], dict(shape=(None, 4), order='C', device='cpu', writable=False)], name: str, reading: MeshReading) -> Mesh:
+def make_mesh(vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], tetrahedra: Annotated[NDArray[numpy.uint32], dict(shape=(None, 4), order='C', device='cpu', writable=False)], pressures: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)] | None, name: str, reading: MeshReading) -> Mesh:
     """Implementation of tandem.make_mesh, which checks its input."""
 
 def connected(mesh: Mesh, reading: MeshReading) -> Mesh:
@@ -150,6 +156,12 @@ class Answer:
     def contacts(self) -> tuple: ...
 
     def distances(self) -> tuple: ...
+
+    def polygons(self) -> tuple: ...
+
+    def surfaces(self) -> tuple: ...
+
+    def wrenches(self) -> tuple: ...
 
     def pairs_on_device(self) -> Annotated[Any, dict(dtype='int32', shape=(None, 4))]: ...
 

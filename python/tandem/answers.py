@@ -43,6 +43,40 @@ class Distances(NamedTuple):
     distances: numpy.ndarray  #: (n,) float64: in the meshes' unit, < 0 for pairs that meet
 
 
+class Surfaces(NamedTuple):
+    """Contact surfaces of a frame, sorted by pair: of contact_rule="pressure", one polygon for each pair of
+    tetrahedra on which their pressures are equal."""
+
+    pairs: numpy.ndarray  #: (n, 4) int32, as of Contacts
+    centroids: numpy.ndarray  #: (n, 3) float64: world coordinates, in the meshes' unit
+    normals: (
+        numpy.ndarray
+    )  #: (n, 3) float64: unit vectors along the gradient of a's pressure minus that of b's, into body a
+    areas: numpy.ndarray  #: (n,) float64
+    pressures: (
+        numpy.ndarray
+    )  #: (n,) float64: at the centroids; areas * pressures * normals are forces on body a
+    corners: numpy.ndarray | None = (
+        None  #: (m, 3) float64: the corners of all polygons, one polygon after the other
+    )
+    corner_pressures: numpy.ndarray | None = None  #: (m,) float64
+    ends: numpy.ndarray | None = (
+        None  #: (n,) uint64: corners of polygon i end before ends[i], where those of i + 1 begin
+    )
+
+
+class Wrenches(NamedTuple):
+    """Sums of the polygons of each body pair, sorted by bodies: of output="wrenches"."""
+
+    bodies: numpy.ndarray  #: (n, 2) int32: body a, body b. With worlds (n, 3), the world first
+    forces: numpy.ndarray  #: (n, 3) float64: on body a, in units of pressure times area; b has the opposite
+    torques: (
+        numpy.ndarray
+    )  #: (n, 3) float64: on body a about its position; of a deformable body about the answer's origin
+    areas: numpy.ndarray  #: (n,) float64
+    polygons: numpy.ndarray  #: (n,) uint32: their number
+
+
 class Answer:
     """Result of one run. Later runs of the collider do not change it. It keeps the collider's memory until it
     is deleted."""
@@ -126,13 +160,13 @@ class Answer:
         """Contacts of the pairs (see Contacts), in host memory. The contact rule determines which pairs have
         some: with the default, "sat", all that meet; other rules need boundary faces
         (docs/user/python_answers.md)."""
-        pairs, *columns = self._core.contacts()
+        pairs, *columns, _ = self._core.contacts()
         return Contacts(self._numbering.rows_of(pairs), *columns)
 
     def distances(self) -> Distances:
         """Distances (see Distances), in host memory: with contact_rule="distance" of all pairs within the margin, with
         output="distances" the least of each body pair."""
-        pairs, features, points, normals, distances = self._core.distances()
+        pairs, features, points, normals, distances, _ = self._core.distances()
         return Distances(
             self._numbering.rows_of(pairs),
             features,
@@ -141,6 +175,25 @@ class Answer:
             normals,
             distances,
         )
+
+    def surfaces(self, corners: bool = False) -> Surfaces:
+        """Contact surfaces (see Surfaces) of contact_rule="pressure", in host memory. With `corners`, the corners
+        of each polygon and the pressures there: the host computes them again on all cores, with the device's
+        arithmetic. For arrays that were in memory of the device this needs what meeting() needs."""
+        pairs, _, centroids, normals, areas, pressures = self._core.polygons()
+        rows = (self._numbering.rows_of(pairs), centroids, normals, areas, pressures)
+        if not corners:
+            return Surfaces(*rows)
+        points, at_points, ends = self._core.surfaces()
+        return Surfaces(*rows, points, at_points[:, 0], ends[:, 0])
+
+    def wrenches(self) -> Wrenches:
+        """Force, torque and area of each body pair with polygons (see Wrenches), with output="wrenches". The sums are
+        made on the device, and are equal on every device."""
+        pairs, polygons, forces, torques, areas, _ = self._core.wrenches()
+        rows = self._numbering.rows_of(pairs)
+        bodies = numpy.delete(rows, [rows.shape[1] - 3, rows.shape[1] - 1], axis=1)
+        return Wrenches(bodies, forces, torques, areas, polygons)
 
     def __repr__(self) -> str:
         return f"<tandem.Answer: {self.count} pairs, {self.contact_count} contacts>"
@@ -186,7 +239,8 @@ class Queued:
     def contact_values(self) -> Any:
         """(capacity, 8) float32, float64 with precision="double": point relative to `origin`, normal out of
         body a, depth, and a column that is not used. With contact_rule="distance" the point is that of body a, and
-        the distance replaces the depth."""
+        the distance replaces the depth. With contact_rule="pressure": centroid, normal into body a, area, pressure; with
+        output="wrenches": force on body a, torque about its position, area, 0."""
         return self._core.contact_values
 
     @property

@@ -48,6 +48,17 @@ def host_array(value, what, columns, dtype=numpy.float64):
     return numpy.require(array, dtype, "CA")
 
 
+def host_numbers(value, what):
+    """`value` as a contiguous array (n,) of float64. Raises as host_array()."""
+    refuse_mapping(value, what)
+    array = numpy_array(value, what)
+    if array.ndim != 1:
+        raise ValueError(f"{what}: shape {array.shape}; expected (n,)")
+    if array.dtype.kind not in "iuf":
+        raise TypeError(f"{what}: type {array.dtype}; expected real numbers")
+    return numpy.require(array, numpy.float64, "CA")
+
+
 def refuse_mapping(value, what):
     """Raises TypeError for a mapping, where arrays of all bodies are expected."""
     if isinstance(value, Mapping):

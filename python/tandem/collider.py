@@ -21,7 +21,7 @@ from .arguments import (
 )
 from .arrays import stream_address
 from .changes import changes_of
-from .meshes import mesh_of
+from .meshes import mesh_of, tell_missing_fields
 from .telling import warn
 from .worlds import Numbering
 
@@ -68,8 +68,8 @@ class Collider:
     meets itself. self_collision: True: also pairs of tetrahedra of one body that share no vertex;
     "deformable": only in deformable bodies. The same as
         setting self.
-    duplicates, weld: those of tandem.make_mesh, for all meshes. None: a tandem.Mesh keeps its own, and others
-    have "merge" and no welding. What a
+    duplicates, weld, pressure: those of tandem.make_mesh, for all meshes. None: a tandem.Mesh keeps its own,
+    and others have "merge", no welding and the pressure field of their source, if any. What a
         mesh has of duplicates and coincident vertices is told once, as a UserWarning.
     worlds: N: the bodies exist N times, in N independent states that one call collides; bodies of two worlds
     never meet. All options above are those
@@ -111,13 +111,14 @@ class Collider:
         self_collision: bool | str = False,
         duplicates: str | None = None,
         weld: float | None = None,
+        pressure: float | None = None,
         worlds: int | None = None,
         preset: str = "",
         stream: Any = None,
         **settings: Any,
     ) -> None:
         all_meshes = [
-            mesh_of(mesh, f"meshes[{i}]", duplicates, weld)
+            mesh_of(mesh, f"meshes[{i}]", duplicates, weld, pressure)
             for i, mesh in enumerate(list_of(meshes, "meshes"))
         ]
         mesh_of_body = meshes_of_bodies(bodies, len(all_meshes))
@@ -137,6 +138,8 @@ class Collider:
         self._core = _core.Collider(all_meshes, options, stream)
         if self._core.nothing_meets:
             warn(f"nothing can meet: {self._core.nothing_meets}")
+        if texts.get("contact_rule") == "pressure":
+            tell_missing_fields([all_meshes[number] for number in mesh_of_body])
         self._arguments = named | {
             "bodies": mesh_of_body,
             "deformable": self._deformable,
@@ -145,6 +148,7 @@ class Collider:
             "never_meet": apart,
             "duplicates": duplicates,
             "weld": weld,
+            "pressure": pressure,
             "worlds": numbering.worlds,
             **texts,
         }

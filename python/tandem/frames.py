@@ -54,7 +54,8 @@ def write_frames(
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True)
     for i, part in enumerate(parts):
-        (folder / f"mesh{i}.vtu").write_text(_vtu(part.vertices, part.tetrahedra), encoding="ascii")
+        text = _vtu(part.vertices, part.tetrahedra, part.pressures)
+        (folder / f"mesh{i}.vtu").write_text(text, encoding="ascii")
     described = [{"mesh": f"mesh{number}"} for number in numbers]
     for body in rigid:
         described[body]["poses"] = [rows[body].tolist() for rows in moves]
@@ -128,10 +129,11 @@ def _states(vertices, counts, soft):
     return frames
 
 
-def _vtu(vertices, tetrahedra):
+def _vtu(vertices, tetrahedra, pressures=None):
     """A file of VTK XML for unstructured grids, with binary arrays."""
     count = len(tetrahedra)
-    arrays = {
+    field = {} if pressures is None else {"PointData": [("pressure", "Float64", 1, pressures, "<f8")]}
+    arrays = field | {
         "Points": [("", "Float64", 3, vertices, "<f8")],
         "Cells": [
             ("connectivity", "Int64", 1, tetrahedra, "<i8"),

@@ -80,6 +80,7 @@ Mesh read_one(const Json& json, const JsonLocation& location, const Files& files
     auto source = files;
     if (is_scaled) { // connected below, in the unit of the scene
         source.reading.weld.reset();
+        source.reading.pressure.reset();
         source.reading.duplicates = Duplicates::keep;
     }
     auto mesh = read_source(json, location, source);

@@ -3,8 +3,11 @@
 
 #include "scenes/export/vtk_xml.h"
 #include "scenes/export/world.h"
+#include "scenes/pressure_field.h"
 
+#include <algorithm>
 #include <fmt/format.h>
+#include <iterator>
 #include <numeric>
 
 namespace tandem {
@@ -17,6 +20,7 @@ constexpr std::uint8_t vtk_tetra = 10;
 /// All bodies of a frame as one grid.
 struct Grid {
     std::vector<float> points;
+    std::vector<double> pressures; ///< one a point; empty unless all bodies have a field
     std::vector<std::int64_t> corners;
     std::vector<std::uint32_t> bodies, tetrahedra; ///< one a cell
 };
@@ -25,13 +29,15 @@ Grid grid_of(const Scene& scene, const Frame& frame) {
     Grid grid;
     grid.points.reserve(vertex_count(scene) * 3);
     grid.corners.reserve(tetrahedron_count(scene) * 4);
+    const bool have_fields = bodies_without_field(scene) == 0;
     for (std::uint32_t body = 0; body < scene.bodies.size(); ++body) {
         const auto first = static_cast<std::int64_t>(grid.points.size() / 3);
         for (const auto& v : exporting::world_vertices(scene, frame, body))
             for (const double x : v) grid.points.push_back(static_cast<float>(x));
-        const auto& tetrahedra = scene.meshes[scene.bodies[body].mesh].tetrahedra;
-        for (std::uint32_t t = 0; t < tetrahedra.size(); ++t) {
-            for (const auto vertex : tetrahedra[t]) grid.corners.push_back(first + vertex);
+        const auto& mesh = scene.meshes[scene.bodies[body].mesh];
+        if (have_fields) std::ranges::copy(mesh.pressures, std::back_inserter(grid.pressures));
+        for (std::uint32_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+            for (const auto vertex : mesh.tetrahedra[t]) grid.corners.push_back(first + vertex);
             grid.bodies.push_back(body);
             grid.tetrahedra.push_back(t);
         }
@@ -86,6 +92,11 @@ void write_vtu(const std::string& path, const Scene& scene, const Frame& frame,
     exporting::VtkXml xml("UnstructuredGrid");
     xml.open("UnstructuredGrid");
     xml.open(fmt::format("Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\"", grid.points.size() / 3, cells));
+    if (!grid.pressures.empty()) {
+        xml.open("PointData Scalars=\"pressure\"");
+        xml.array("pressure", 1, grid.pressures);
+        xml.close();
+    }
     xml.open("Points");
     xml.array("Points", 3, grid.points);
     xml.close();

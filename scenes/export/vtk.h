@@ -14,7 +14,8 @@ struct CellNumbers {
 };
 
 /// Writes all bodies of a frame as a .vtu file of tetrahedra in world coordinates, rounded to float. Cell
-/// data are the numbers of body and tetrahedron and the arrays of `numbers`. Throws InputError.
+/// data are the numbers of body and tetrahedron and the arrays of `numbers`. Point data are the pressures, in
+/// double, if the mesh of every body has a field. Throws InputError.
 void write_vtu(const std::string& path, const Scene& scene, const Frame& frame,
                std::span<const CellNumbers> numbers = {});
 

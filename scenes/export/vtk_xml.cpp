@@ -43,6 +43,7 @@ std::string encoded(std::string_view bytes) {
 }
 
 void put_number(std::string& out, float value) { recording::put_float(out, value); }
+void put_number(std::string& out, double value) { recording::put_double(out, value); }
 void put_number(std::string& out, std::int64_t value) {
     recording::put(out, static_cast<std::uint64_t>(value));
 }
@@ -84,6 +85,10 @@ void VtkXml::add(std::string_view name, std::string_view type, std::size_t compo
 
 void VtkXml::array(std::string_view name, std::size_t components, std::span<const float> values) {
     add(name, "Float32", components, values);
+}
+
+void VtkXml::array(std::string_view name, std::size_t components, std::span<const double> values) {
+    add(name, "Float64", components, values);
 }
 
 void VtkXml::array(std::string_view name, std::size_t components, std::span<const std::uint32_t> values) {

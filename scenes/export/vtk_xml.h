@@ -19,6 +19,7 @@ public:
     void close();
     /// Adds an array with `components` numbers an item.
     void array(std::string_view name, std::size_t components, std::span<const float> values);
+    void array(std::string_view name, std::size_t components, std::span<const double> values);
     void array(std::string_view name, std::size_t components, std::span<const std::uint32_t> values);
     void array(std::string_view name, std::size_t components, std::span<const std::int64_t> values);
     void array(std::string_view name, std::size_t components, std::span<const std::uint8_t> values);

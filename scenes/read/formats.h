@@ -22,6 +22,9 @@ inline constexpr std::string_view corners_remedy =
 inline constexpr std::string_view only_remedy =
     "split them into linear tetrahedra, or give --only-tetrahedra to leave them out";
 
+/// The name of a pressure field among the data of points and nodes.
+inline constexpr std::string_view pressure_name = "pressure";
+
 /// Throws InputError when there is no tetrahedron.
 void require_tetrahedra(const Mesh& mesh, const std::string& source);
 

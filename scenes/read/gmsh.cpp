@@ -118,7 +118,7 @@ Mesh parse_gmsh(std::string_view bytes, const std::string& source, const MeshRea
             read_nodes(file, *version);
         else if (elements)
             version->read_elements(file);
-        else
+        else if (name != "$NodeData" || !read_pressures(file))
             skip_section(file.in, name);
         end_section(file.in, name);
     }

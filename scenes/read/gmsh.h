@@ -23,6 +23,7 @@ public:
     /// Call once after the last add. Returns a duplicate tag, or none.
     std::optional<std::uint64_t> index();
     std::optional<std::uint32_t> find(std::uint64_t tag) const;
+    std::uint64_t operator[](std::size_t index) const { return tags_[index]; }
     std::size_t size() const { return tags_.size(); }
 
 private:
@@ -60,6 +61,8 @@ void read_nodes_40(GmshFile& file);
 void read_elements_40(GmshFile& file);
 void read_nodes_41(GmshFile& file);
 void read_elements_41(GmshFile& file);
+/// Reads the contents of $NodeData if they are pressures. False, with nothing read, for other data.
+bool read_pressures(GmshFile& file);
 
 /// Whether elements of this type are tetrahedra of any order. Their first four nodes are the corners.
 inline bool is_tetrahedron(const ElementType& type) { return type.name.ends_with("tetrahedron"); }

@@ -1,28 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/read/formats.h"
-#include "scenes/read/vtk_cells.h"
+#include "scenes/read/vtk_file.h"
 
 namespace tandem::read {
 
 namespace {
-
-struct File {
-    Scanner in;
-    bool binary = false;
-    Mesh mesh = {};
-    VtkCells cells = {};
-    MeshReading reading = {};
-};
-
-/// Runs `body` on text, or on big-endian binary data, which start on the next line.
-template<class Body>
-void in_encoding(File& file, Body body) {
-    if (!file.binary) return body(file.in);
-    file.in.line();
-    Cursor cursor(file.in.text(), file.in.source(), file.in.at(), std::endian::big);
-    body(cursor);
-    file.in.seek(cursor.at());
-}
 
 void expect(Scanner& in, std::string_view wanted) {
     const auto word = in.token(wanted);
@@ -30,16 +12,7 @@ void expect(Scanner& in, std::string_view wanted) {
         in.fail(fmt::format("expected {}, found {}", wanted, in_quotes(word)), "give an unstructured grid");
 }
 
-Number get_type(Scanner& in) {
-    const auto name = in.token("a number type");
-    const auto type = number_type(name);
-    if (!type)
-        in.fail(fmt::format("number type {} is not supported", in_quotes(name)),
-                "save as float or double, and int");
-    return *type;
-}
-
-void read_header(File& file) {
+void read_header(VtkFile& file) {
     auto& in = file.in;
     if (!in.line().starts_with("# vtk DataFile Version"))
         in.fail("expected '# vtk DataFile Version'", "give a legacy VTK file");
@@ -56,7 +29,7 @@ void read_header(File& file) {
 
 /// Reads cells, each stored as its number of vertices followed by the vertices.
 template<class In>
-void read_rows(In& in, std::uint64_t n, std::uint64_t size, File& file) {
+void read_rows(In& in, std::uint64_t n, std::uint64_t size, VtkFile& file) {
     in.check_count(size, 1, 4, "numbers of cells");
     if (n > size) in.fail(fmt::format("{} cells in {} numbers", n, size), "correct the counts of CELLS");
     file.cells.ends.reserve(n);
@@ -76,7 +49,7 @@ void read_rows(In& in, std::uint64_t n, std::uint64_t size, File& file) {
 }
 
 /// Reads cells of version 5: the offsets of all cells plus one, then the vertices of all cells.
-void read_offsets(File& file, std::uint64_t n, std::uint64_t size) {
+void read_offsets(VtkFile& file, std::uint64_t n, std::uint64_t size) {
     auto& in = file.in;
     expect(in, "OFFSETS");
     const auto offsets = get_type(in);
@@ -94,7 +67,7 @@ void read_offsets(File& file, std::uint64_t n, std::uint64_t size) {
         in.fail("the last offset is not the size of CONNECTIVITY", "export the file again");
 }
 
-void read_cells(File& file) {
+void read_cells(VtkFile& file) {
     auto& in = file.in;
     if (!file.cells.ends.empty()) in.fail("a second section CELLS", "merge the two");
     const auto n = in.get<std::uint64_t>("the number of cells");
@@ -107,7 +80,7 @@ void read_cells(File& file) {
     in_encoding(file, [&](auto& data) { read_rows(data, n, size, file); });
 }
 
-void read_cell_types(File& file) {
+void read_cell_types(VtkFile& file) {
     auto& in = file.in;
     const auto n = in.get<std::uint64_t>("the number of cell types");
     if (n != file.cells.ends.size())
@@ -117,74 +90,10 @@ void read_cell_types(File& file) {
                 [&](auto& data) { read_types(data, Number::i32, file.cells, 0, file.reading, file.mesh); });
 }
 
-void skip_value(Scanner& in, Number) { in.token("a value of a field"); }
-
-void skip_value(Cursor& in, Number type) {
-    for (std::size_t byte = 0; byte < size_of(type); ++byte) in.get<char>("a value of a field");
-}
-
-/// Strings in text: one on each line after the header's.
-void skip_strings(Scanner& in, std::uint64_t n) {
-    in.line();
-    for (std::uint64_t i = 0; i < n && !in.done(); ++i) in.line();
-}
-
-/// Strings in binary data: a length, then the characters. The two highest bits of the length tell its bytes.
-void skip_strings(Cursor& in, std::uint64_t n) {
-    for (std::uint64_t i = 0; i < n; ++i) {
-        const std::uint64_t first = in.get<std::uint8_t>("the length of a string");
-        std::uint64_t length = first & 63;
-        for (auto bytes = (std::uint64_t{1} << (3 - first / 64)) - 1; bytes > 0; --bytes)
-            length = length << 8 | in.get<std::uint8_t>("the length of a string");
-        for (; length > 0; --length) in.get<char>("a character of a string");
-    }
-}
-
-/// Bits: one number each in text, eight a byte in binary data.
-void skip_bits(Scanner& in, std::uint64_t n) {
-    for (std::uint64_t i = 0; i < n; ++i) in.token("a value of a field");
-}
-
-void skip_bits(Cursor& in, std::uint64_t n) {
-    for (std::uint64_t byte = 0; byte < (n + 7) / 8; ++byte) in.get<char>("a value of a field");
-}
-
-/// Skips the arrays of FIELD: name, components, tuples, type, data.
-void skip_field(File& file) {
-    auto& in = file.in;
-    in.token("the name of a field");
-    const auto arrays = in.get<std::uint64_t>("the number of arrays");
-    for (std::uint64_t i = 0; i < arrays; ++i) {
-        in.token("the name of an array");
-        const auto width = in.get<std::uint32_t>("the number of components");
-        const auto tuples = in.get<std::uint32_t>("the number of tuples");
-        const auto n = std::uint64_t{width} * tuples;
-        const auto start = in.at();
-        const auto name = in.token("a number type");
-        if (same_word(name, "string")) {
-            in_encoding(file, [&](auto& data) { skip_strings(data, n); });
-        } else if (same_word(name, "bit")) {
-            in_encoding(file, [&](auto& data) { skip_bits(data, n); });
-        } else {
-            in.seek(start);
-            const auto type = get_type(in);
-            in_encoding(file, [&](auto& data) {
-                for (std::uint64_t v = 0; v < n; ++v) skip_value(data, type);
-            });
-        }
-    }
-}
-
-/// Skips METADATA, which ends with an empty line.
-void skip_metadata(Scanner& in) {
-    in.line();
-    while (!in.line().empty()) {}
-}
-
 } // namespace
 
 Mesh parse_vtk(std::string_view bytes, const std::string& source, const MeshReading& reading) {
-    File file{.in = Scanner(bytes, source), .reading = reading};
+    VtkFile file{.in = Scanner(bytes, source), .reading = reading};
     auto& in = file.in;
     read_header(file);
     while (!in.done()) {
@@ -202,7 +111,8 @@ Mesh parse_vtk(std::string_view bytes, const std::string& source, const MeshRead
         } else if (same_word(keyword, "METADATA")) {
             skip_metadata(in);
         } else if (same_word(keyword, "POINT_DATA") || same_word(keyword, "CELL_DATA")) {
-            break; // they follow the grid
+            read_data(file, keyword); // they follow the grid, up to the end
+            break;
         } else {
             in.fail(fmt::format("unknown keyword {}", in_quotes(keyword)),
                     "correct the counts of the section above");

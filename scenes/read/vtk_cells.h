@@ -68,6 +68,14 @@ void read_points(In& in, Number type, std::uint64_t n, Mesh& mesh) {
     }
 }
 
+/// Reads the pressures of n points.
+template<class In>
+void read_pressures(In& in, Number type, std::uint64_t n, Mesh& mesh) {
+    in.check_count(n, 1, size_of(type), "pressures");
+    mesh.pressures.reserve(mesh.pressures.size() + n);
+    for (std::uint64_t i = 0; i < n; ++i) mesh.pressures.push_back(get_real(in, type, "a pressure"));
+}
+
 /// Reads n vertex numbers into `cells`, each below `points`.
 template<class In>
 void read_connectivity(In& in, Number type, std::uint64_t n, std::size_t points, VtkCells& cells) {

@@ -18,6 +18,7 @@ struct Piece {
     std::optional<Tag> offsets = {};
     std::optional<Tag> types = {};
     std::optional<Tag> ghosts = {};
+    std::optional<Tag> pressures = {};
 };
 
 Tag read_root(Xml& xml) {
@@ -33,10 +34,15 @@ void add_array(Piece& piece, std::string_view section, const Tag& array) {
     const auto name = array.get("Name");
     if (section == "Points") piece.points = array;
     if (section == "CellData" && name == "vtkGhostType") piece.ghosts = array;
+    if (section == "PointData" && name == pressure_name) piece.pressures = array;
     if (section != "Cells") return;
     if (name == "connectivity") piece.connectivity = array;
     if (name == "offsets") piece.offsets = array;
     if (name == "types") piece.types = array;
+}
+
+bool is_section(std::string_view name) {
+    return name == "Points" || name == "Cells" || name == "CellData" || name == "PointData";
 }
 
 /// Collects the arrays of all pieces and finds the appended data, which come last.
@@ -47,9 +53,9 @@ std::vector<Piece> read_structure(Xml& xml, VtuData& data) {
     while (const auto tag = xml.next()) {
         if (tag->name == "Piece") {
             pieces.push_back({*tag});
-        } else if (tag->name == "Points" || tag->name == "Cells" || tag->name == "CellData") {
-            section = tag->name;
-        } else if (tag->name == "/Points" || tag->name == "/Cells" || tag->name == "/CellData") {
+        } else if (is_section(tag->name)) {
+            section = tag->closed ? "" : tag->name;
+        } else if (tag->name.starts_with('/') && is_section(tag->name.substr(1))) {
             section = "";
         } else if (tag->name == "DataArray" && !pieces.empty()) {
             add_array(pieces.back(), section, *tag);
@@ -83,6 +89,22 @@ void read_ghosts(In& in, Number type, std::uint64_t n, VtkCells& cells) {
         cells.ghosts.push_back(static_cast<std::uint8_t>(get_whole(in, type, "bits of vtkGhostType")));
 }
 
+/// Reads the pressures of a piece's `points`, which follow those of `base` points of earlier pieces.
+void take_pressures(const Xml& xml, const VtuData& data, const Piece& piece, std::uint64_t points,
+                    std::size_t base, Mesh& mesh) {
+    if (base > 0 && piece.pressures.has_value() == mesh.pressures.empty())
+        xml.fail(piece.tag.at,
+                 fmt::format("a Piece {} point data pressure, unlike those before it",
+                             piece.pressures ? "has" : "lacks"),
+                 "give it to all pieces, or to none");
+    if (!piece.pressures) return;
+    const auto width = piece.pressures->get("NumberOfComponents", "1");
+    if (width != "1")
+        xml.fail(piece.pressures->at, fmt::format("point data pressure has {} components", in_quotes(width)),
+                 "give one number a point");
+    data.with_array(*piece.pressures, [&](auto& in, Number type) { read_pressures(in, type, points, mesh); });
+}
+
 void read_piece(const Xml& xml, const VtuData& data, const Piece& piece, const MeshReading& reading,
                 Mesh& mesh) {
     const auto points = get_count(xml, piece.tag, "NumberOfPoints");
@@ -92,6 +114,7 @@ void read_piece(const Xml& xml, const VtuData& data, const Piece& piece, const M
         xml.fail(piece.tag.at, "Piece lacks Points, connectivity, offsets or types", "export the file again");
     const auto base = mesh.vertices.size();
     data.with_array(*piece.points, [&](auto& in, Number type) { read_points(in, type, points, mesh); });
+    take_pressures(xml, data, piece, points, base, mesh);
     if (count == 0) return;
     VtkCells cells;
     data.with_array(*piece.offsets, [&](auto& in, Number type) { read_ends(in, type, count, cells); });

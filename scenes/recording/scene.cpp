@@ -64,6 +64,15 @@ void check_specification(const RecordingHeader& header, const std::filesystem::p
     }
 }
 
+/// Whether the scene is the recorded one, or would be without the pressure fields that `reading` adds: a
+/// recording of motion can be given fields.
+bool is_recorded(const Scene& scene, const RecordingHeader& header, MeshReading reading) {
+    if (scene.digest == header.scene_digest) return true;
+    if (!reading.pressure) return false;
+    reading.pressure.reset();
+    return make_scene(header.specification, reading).digest == header.scene_digest;
+}
+
 /// Recreates the recorded scene. Errors name the recording.
 Scene recreate_scene(const Recording& recording, const MeshReading& reading) {
     const auto& header = recording.header();
@@ -77,18 +86,20 @@ Scene recreate_scene(const Recording& recording, const MeshReading& reading) {
     } catch (const InputError& error) {
         fail(fmt::format("its scene cannot be made again: {}", error.what()));
     }
-    if (scene.digest != header.scene_digest || recorded_bodies(scene) != header.bodies)
-        fail(
-            fmt::format("was recorded from a scene with digest {:016x}, but {} now has {:016x}; restore that "
-                        "scene, give --duplicates and --weld as its simulation had them, or record again",
-                        header.scene_digest, header.specification, scene.digest));
+    if (!is_recorded(scene, header, reading) || recorded_bodies(scene) != header.bodies)
+        fail(fmt::format(
+            "was recorded from a scene with digest {:016x}, but {} now has {:016x}; restore that "
+            "scene, give --duplicates, --weld and --pressure as its simulation had them, or record "
+            "again",
+            header.scene_digest, header.specification, scene.digest));
     return scene;
 }
 
-/// Includes the checksums of all frames, since only the file defines them.
-std::uint64_t digest_of(const Recording& recording) {
+/// Includes the checksums of all frames, since only the file defines them. `scene` is the digest of the scene
+/// that was made again.
+std::uint64_t digest_of(const Recording& recording, std::uint64_t scene) {
     std::string text;
-    recording::put(text, recording.header().scene_digest);
+    recording::put(text, scene);
     recording::put_double(text, recording.header().seconds_per_frame);
     for (std::size_t i = 0; i < recording.frames(); ++i) recording::put(text, recording.stored_checksum(i));
     return tandem::digest_of(std::string_view(text));
@@ -101,7 +112,7 @@ Scene load_recording(const std::string& path, const MeshReading& reading) {
     auto scene = recreate_scene(*recording, reading);
     if (recording->frames() == 0) throw InputError(recording->end());
     scene.name = std::filesystem::path(path).stem().string();
-    scene.digest = digest_of(*recording);
+    scene.digest = digest_of(*recording, scene.digest);
     // Uses the scene's key: the specification in the header can be a private path.
     scene.key = fmt::format("recording:{},frames={},digest={:016x},of={}", scene.name, recording->frames(),
                             scene.digest, scene.key);

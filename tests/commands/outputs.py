@@ -44,8 +44,12 @@ class Outputs(Case):
 
     def test_outputs_of_run(self):
         mesh = ("run", "--mesh", self.mesh, *ONE)
-        for option in ("--dump-pairs", "--dump-contacts", "--dump-distances", "--trace", "--out"):
-            given = (*mesh, *(("--set", "contact_rule=distance") if option == "--dump-distances" else ()))
+        needs = {
+            "--dump-distances": ("--set", "contact_rule=distance"),
+            "--dump-surfaces": ("--set", "contact_rule=pressure", "--pressure", 1),
+        }
+        for option in ("--dump-pairs", "--dump-contacts", *needs, "--trace", "--out"):
+            given = (*mesh, *needs.get(option, ()))
             self.kept(self.mesh, "is an input", *given, option, lambda name: name)
             if option != "--out":
                 self.kept(self.records, "is a file of records", *given, option, lambda name: name)

@@ -137,7 +137,7 @@ SettingTexts resident_row(SettingTexts row) {
 /// Replaces the values of a row that do not go with polygons of equal pressure.
 SettingTexts with_one_field(SettingTexts row) {
     if (row.at("contact_rule") != "pressure") return row;
-    if (row.at("residency") == "published" || row.at("motion") == "linear")
+    if ((row.contains("residency") && row.at("residency") == "published") || row.at("motion") == "linear")
         row["contact_rule"] = "sat";
     else
         row["self"] = "off";

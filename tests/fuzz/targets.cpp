@@ -66,6 +66,7 @@ void read_any_mesh(std::string_view bytes) {
     const auto flags = choice / suffixes.size();
     MeshReading reading{.corners = (flags & 1) != 0, .only_tetrahedra = (flags & 2) != 0};
     if ((flags & 4) != 0) reading.weld = 0.5;
+    if ((flags & 8) != 0) reading.pressure = 1;
     bytes.remove_prefix(1);
     auto mesh = [&] {
         if (suffix != ".node") return parse_mesh(bytes, "fuzz" + suffix, reading);

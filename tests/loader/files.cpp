@@ -55,6 +55,13 @@ void expect_example(const Mesh& mesh, bool single) {
     EXPECT_EQ(mesh.tetrahedra, (std::vector<Tetrahedron>{{0, 1, 2, 3}, {4, 3, 2, 1}}));
 }
 
+void expect_pressures(const std::string& name, std::string_view bytes, bool single) {
+    SCOPED_TRACE(name);
+    const auto mesh = read_mesh(write_file(name, bytes));
+    expect_example(mesh, single);
+    EXPECT_EQ(mesh.pressures, (std::vector<double>{0, 0.5, 1.25, 0, 3e7, 0.125}));
+}
+
 /// Expects one line as the error for these bytes: path, `location`, ... `reason` ...; message to do.
 void expect_failure(const std::string& name, std::string_view bytes, const std::string& location,
                     std::string_view reason) {

@@ -68,6 +68,15 @@ TEST(Gmsh40, IsReadInBothEncodings) {
     expect_example(read_mesh(write_file("forty.msh", binary40())), false);
 }
 
+TEST(Gmsh40, PressuresInBothEncodings) {
+    const std::string head = "$NodeData\n1\n\"pressure\"\n1\n0\n3\n0\n1\n6\n", end = "$EndNodeData\n";
+    expect_pressures("text.msh", text40 + head + "60 0.125\n30 0\n10 0.5\n20 1.25\n40 0\n50 3e7\n" + end);
+    expect_pressures("binary.msh", binary40() + head + bytes_of(60) + bytes_of(0.125) + bytes_of(30)
+                                       + bytes_of(0.) + bytes_of(10) + bytes_of(0.5) + bytes_of(20)
+                                       + bytes_of(1.25) + bytes_of(40) + bytes_of(0.) + bytes_of(50)
+                                       + bytes_of(3e7) + "\n" + end);
+}
+
 TEST(Gmsh40, BadFilesAreRefused) {
     expect_failure("type.msh", replaced(text40, "1 3 4 2", "1 3 5 2"), ":24", "8-node hexahedron");
     expect_failure("node.msh", replaced(text40, "50 40 20 10", "50 41 20 10"), ":26",

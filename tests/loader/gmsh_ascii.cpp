@@ -66,6 +66,64 @@ $Surface
 $EndSurface
 )";
 
+const std::string node_data = R"($NodeData
+2
+"pressure"
+"a second text"
+1
+0.25
+4
+0
+1
+6
+0
+1 0
+2 0.5
+4 0
+3 1.25
+6 0.125
+5 3e7
+$EndNodeData
+)";
+
+const std::string other_data = "$NodeData\n1\n\"other pressure\"\n0\n3\n0\n3\n1\n1 nan 0 0\n$EndNodeData\n";
+
+TEST(GmshAscii, Pressures) {
+    expect_pressures("two.msh", version2 + other_data + node_data + other_data);
+    auto gappy = node_data;
+    for (const auto* tags : {"1 30", "2 10", "4 60", "3 20", "6 40", "5 50"})
+        gappy = replaced(gappy, std::string("\n") + tags[0] + " ", std::string("\n") + (tags + 2) + " ");
+    // In the example of version 4 node 60 is vertex 3, 50 is 4 and 40 is 5.
+    const auto mesh = read_mesh(write_file("four.msh", version4 + gappy));
+    EXPECT_EQ(mesh.pressures, (std::vector<double>{0, 0.5, 1.25, 0, 3e7, 0.125}));
+    EXPECT_TRUE(read_mesh(write_file("other.msh", version2 + other_data)).pressures.empty());
+    const auto of_elements =
+        replaced(replaced(node_data, "$NodeData", "$ElementData"), "$EndNodeData", "$EndElementData");
+    EXPECT_TRUE(read_mesh(write_file("elements.msh", version2 + of_elements)).pressures.empty());
+}
+
+TEST(GmshAscii, BadPressures) {
+    const auto expect_bad = [](std::string_view from, std::string_view to, const std::string& location,
+                               std::string_view reason) {
+        expect_failure("pressure.msh", version2 + replaced(node_data, from, to), location, reason);
+    };
+    expect_bad("\n1\n6\n", "\n3\n6\n", ":31", "$NodeData pressure has 3 components");
+    expect_bad("\n4\n0\n1\n6\n0\n", "\n2\n0\n1\n", ":29", "2 integer tags instead of 3");
+    expect_bad("\n6\n0\n1 0\n", "\n5\n0\n", ":",
+               "$NodeData pressure leaves out 1 of 6 nodes, such as node 1");
+    expect_bad("\n6\n0\n", "\n600\n0\n", ":", "600 pressures announced");
+    expect_bad("\n6\n0\n", "\n5\n0\n", ":38", "leaves out 1 of 6 nodes, such as node 5");
+    expect_bad("\n6\n0\n", "\n7\n0\n", ":40", "expected the tag of a node");
+    expect_bad("4 0\n", "7 0\n", ":36", "node 7 is not in $Nodes");
+    expect_bad("4 0\n", "2 0\n", ":36", "node 2 has two pressures");
+    expect_bad("3e7", "nan", ":39", "a pressure 'nan' is not finite");
+    expect_bad("3e7", "-3e7", ": ", "the pressure of vertex 4 is -30000000");
+    expect_failure("twice.msh", version2 + node_data + node_data, ":", "a second $NodeData pressure");
+    const auto nodes = version2.find("$Nodes");
+    expect_failure("early.msh", version2.substr(0, nodes) + node_data + version2.substr(nodes), ":",
+                   "$NodeData comes before $Nodes");
+}
+
 TEST(GmshAscii, Version2) { expect_example(read_mesh(write_file("two.msh", version2)), false); }
 
 TEST(GmshAscii, Version4ParametricAndGappyTags) {

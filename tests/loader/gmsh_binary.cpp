@@ -41,6 +41,36 @@ std::string version4() {
            + sizes(2, 2, 30, 10, 20, 40, 3, 50, 40, 20, 10) + "\n$EndElements\n";
 }
 
+/// Pressures of nodes with these tags, in the order of the example's vertices.
+std::string pressures(int a, int b, int c, int d, int e, int f) {
+    return "$NodeData\n1\n\"pressure\"\n1\n0\n3\n0\n1\n6\n" + ints(f) + raw(0.125) + ints(a) + raw(0.)
+           + ints(b) + raw(0.5) + ints(c) + raw(1.25) + ints(d) + raw(0.) + ints(e) + raw(3e7)
+           + "\n$EndNodeData\n";
+}
+
+TEST(GmshBinary, Pressures) {
+    expect_pressures("two.msh", version2() + pressures(1, 2, 3, 4, 5, 6));
+    expect_pressures("four.msh", version4() + pressures(30, 10, 20, 40, 50, 60));
+    const auto other = replaced(pressures(9, 9, 9, 9, 9, 9), "pressure", "p");
+    expect_pressures("others.msh", version2() + other + pressures(1, 2, 3, 4, 5, 6) + other);
+}
+
+TEST(GmshBinary, BadPressures) {
+    const auto whole = version2() + pressures(1, 2, 3, 4, 5, 6);
+    expect_failure("node.msh", version2() + pressures(1, 2, 3, 4, 5, 9), ": byte ",
+                   "node 9 is not in $Nodes");
+    expect_failure("less.msh", replaced(whole, "0\n1\n6\n", "0\n1\n5\n"), ": byte ",
+                   "leaves out 1 of 6 nodes, such as node 5");
+    expect_failure("many.msh", replaced(whole, "0\n1\n6\n", "0\n1\n6000\n"), ": byte ",
+                   "6000 pressures announced");
+    const auto nan = std::numeric_limits<double>::quiet_NaN();
+    expect_failure("nan.msh", replaced(whole, raw(3e7), raw(nan)), ": byte ", "a pressure is not finite");
+    expect_failure("negative.msh", replaced(whole, raw(3e7), raw(-1.)), ": ",
+                   "the pressure of vertex 4 is -1");
+    for (auto size = version2().size() + 1; size + 1 < whole.size(); ++size)
+        expect_failure("cut.msh", whole.substr(0, size), ": ", "; ");
+}
+
 TEST(GmshBinary, Version2) { expect_example(read_mesh(write_file("two.msh", version2())), false); }
 
 TEST(GmshBinary, Version4ParametricAndGappyTags) {

@@ -210,6 +210,27 @@ TEST(Topology, DescriptionsWeldAfterTheirScale) {
     EXPECT_GT(welded(R"({"box": [1, 1, 1]})", 1.1), 0u);
 }
 
+/// A field of a file is kept through a scale, and one is made where the file has none.
+TEST(Topology, DescriptionsHavePressures) {
+    const auto read_field = [](const std::string& mesh, const MeshReading& reading) {
+        const auto text =
+            fmt::format(R"({{"meshes": {{"m": {}}}, "bodies": [{{"mesh": "m"}}], "frames": 1}})", mesh);
+        return make_scene(write_file("fields.json", text), reading).meshes.front().pressures;
+    };
+    write_file("own.vtk", "# vtk DataFile Version 3.0\n\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n"
+                          "0 0 0 1 0 0 0 1 0 0 0 1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\nPOINT_DATA 4\n"
+                          "SCALARS pressure float\nLOOKUP_TABLE default\n0 1 2 3\n");
+    const std::vector<double> own{0, 1, 2, 3};
+    for (const auto* mesh : {R"({"file": "own.vtk"})", R"({"file": "own.vtk", "scale": 10})"}) {
+        EXPECT_EQ(read_field(mesh, {}), own);
+        EXPECT_EQ(read_field(mesh, {.pressure = 7}), own);
+    }
+    for (const auto* mesh : {R"({"box": [1, 1, 1]})", R"({"box": [1, 1, 1], "scale": 3})"}) {
+        EXPECT_TRUE(read_field(mesh, {}).empty());
+        EXPECT_EQ(read_field(mesh, {.pressure = 7}).back(), 7) << "the centre";
+    }
+}
+
 TEST(Topology, FormatsWithoutAReaderAreNamed) {
     expect_failure("fluent.msh", "(0 \"Ansys Fluent\")\n(2 3)\n", ": ", "tandem convert");
     expect_failure("a.bdf", "$ Nastran\nBEGIN BULK\n", ": ", "tandem convert");

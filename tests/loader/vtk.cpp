@@ -93,6 +93,100 @@ TEST(Vtk, Binary) {
     expect_example(read_mesh(write_file("offsets.vtk", binary_offsets())), true);
 }
 
+const std::string scalars = "SCALARS pressure double 1\nLOOKUP_TABLE default\n0 0.5 1.25\n0 3e7 0.125\n";
+
+/// The example of text with other data of its points.
+std::string with_data(const std::string& data) { return replaced(rows, "SCALARS s float 1\n", data); }
+
+/// The same in binary data, after data of its cells.
+std::string with_binary_data(const std::string& data) {
+    return binary_rows() + "SCALARS pressure float\nLOOKUP_TABLE default\n" + big<float>(7, 8, 9)
+           + "\nPOINT_DATA 6\n" + data;
+}
+
+TEST(Vtk, PressuresOfScalars) {
+    expect_pressures("scalars.vtk", with_data(scalars));
+    expect_pressures("width.vtk", with_data(replaced(scalars, "double 1", "double")));
+    expect_pressures("offsets.vtk", offsets + "POINT_DATA 6\n" + scalars);
+    const std::string wide = "SCALARS pressure double\nLOOKUP_TABLE default\n";
+    expect_pressures("binary.vtk", with_binary_data(wide + big<double>(0, 0.5, 1.25, 0, 3e7, 0.125)));
+    expect_pressures("whole.vtk", with_binary_data("SCALARS pressure float\nLOOKUP_TABLE default\n"
+                                                   + big<float>(0, 0.5, 1.25, 0, 3e7, 0.125)));
+}
+
+TEST(Vtk, PressuresOfFields) {
+    const std::string field = "FIELD FieldData 2\nother 2 6 float\n0 1 2 3 4 5 6 7 nan 9 10 11\nMETADATA\n"
+                              "INFORMATION 0\n\npressure 1 6 double\n0 0.5 1.25 0 3e7 0.125\n";
+    expect_pressures("field.vtk", with_data(field));
+    expect_pressures("fieldb.vtk",
+                     with_binary_data("FIELD FieldData 2\nother 1 3 int\n" + big<std::int32_t>(10, 32, 9)
+                                      + "\nMETADATA\nINFORMATION 0\n\npressure 1 6 double\n"
+                                      + big<double>(0, 0.5, 1.25, 0, 3e7, 0.125)));
+}
+
+TEST(Vtk, OtherDataAreSkipped) {
+    const std::string six = "0 1 2 3 4 5\n", twelve = six + six;
+    const std::string others[] = {"SCALARS s float 2\nLOOKUP_TABLE pressure\n" + twelve,
+                                  "LOOKUP_TABLE pressure 3\n" + twelve,
+                                  "COLOR_SCALARS pressure 2\n" + twelve,
+                                  "VECTORS v float\n" + twelve + six,
+                                  "NORMALS n double\n" + twelve + six,
+                                  "TENSORS t float\n" + twelve + twelve + twelve + twelve + six,
+                                  "TENSORS6 t float\n" + twelve + twelve + twelve,
+                                  "TEXTURE_COORDINATES uv 2 float\n" + twelve,
+                                  "GLOBAL_IDS g vtkIdType\n" + six,
+                                  "PEDIGREE_IDS p string\none\ntwo\nthree\nfour\nfive\nsix\n",
+                                  "EDGE_FLAGS e bit\n0 1 0 1 0 1\n",
+                                  "METADATA\nCOMPONENT_NAMES\npressure\n\n"};
+    for (const auto& other : others) {
+        SCOPED_TRACE(other);
+        expect_pressures("after.vtk", with_data(other + scalars));
+        expect_pressures("before.vtk", with_data(scalars + other));
+        EXPECT_TRUE(read_mesh(write_file("none.vtk", with_data(other))).pressures.empty());
+    }
+    const std::string binary[] = {
+        "COLOR_SCALARS pressure 1\n" + big<std::uint8_t>(10, 32, 9, 10, 32, 9) + "\n",
+        "LOOKUP_TABLE pressure 1\n" + big<std::uint8_t>(10, 32, 9, 10) + "\n",
+        "VECTORS v short\n" + big<std::int16_t>(1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18)
+            + "\n"};
+    const auto own =
+        "SCALARS pressure double\nLOOKUP_TABLE pressure\n" + big<double>(0, 0.5, 1.25, 0, 3e7, 0.125) + "\n";
+    for (const auto& other : binary) {
+        expect_pressures("afterb.vtk", with_binary_data(other + own));
+        expect_pressures("beforeb.vtk", with_binary_data(own + other));
+    }
+    const auto of_cells = replaced(replaced(rows, "POINT_DATA 6", "CELL_DATA 3"), "SCALARS s float 1\n",
+                                   "SCALARS pressure float\nLOOKUP_TABLE default\n1 2 3\n");
+    EXPECT_TRUE(read_mesh(write_file("cells.vtk", of_cells)).pressures.empty());
+    EXPECT_TRUE(read_mesh(write_file("other.vtk", with_data("SCALARS Pressure float\n"))).pressures.empty());
+}
+
+TEST(Vtk, BadPressures) {
+    const auto expect_bad = [](std::string_view from, std::string_view to, const std::string& location,
+                               std::string_view reason) {
+        expect_failure("pressure.vtk", with_data(replaced(scalars, from, to)), location, reason);
+    };
+    expect_bad("double 1", "double 3", ":25", "pressure has 6 x 3 numbers for 6 points");
+    expect_bad("0 3e7", "-1 3e7", ": ", "the pressure of vertex 3 is -1");
+    expect_bad("3e7", "3e39", ": ", "the pressure of vertex 4 is 3e+39");
+    expect_bad("3e7", "nan", ":27", "a pressure 'nan' is not finite");
+    expect_bad("3e7", "inf", ":27", "a pressure 'inf' is not finite");
+    expect_bad("3e7", "high", ":27", "expected a pressure, found 'high'");
+    expect_bad(" 0.125", "", ":28", "the file ends before a pressure");
+    expect_bad("0 0.5 1.25\n0 3e7 0.125", "1 2", ":25", "6 pressures announced");
+    expect_bad("LOOKUP_TABLE default\n", "", ":25", "expected LOOKUP_TABLE, found '0'");
+    expect_bad("double", "bit", ":25", "number type 'bit' is not supported");
+    expect_bad("0.125\n", "0.125 7\n", ":27", "unknown keyword '7'");
+    expect_failure("twice.vtk", with_data(scalars + scalars), ":29", "a second array of point data pressure");
+    expect_failure("five.vtk", replaced(with_data(scalars), "POINT_DATA 6", "POINT_DATA 5"), ":25",
+                   "pressure has 5 x 1 numbers for 6 points");
+    expect_failure("field.vtk", with_data("FIELD FieldData 1\npressure 1 5 float\n0 1 2 3 4\n"), ":25",
+                   "pressure has 5 x 1 numbers for 6 points");
+    expect_failure("cut.vtk",
+                   with_binary_data("SCALARS pressure double\nLOOKUP_TABLE default\n" + big<double>(0, 1)),
+                   ": byte ", "6 pressures announced");
+}
+
 TEST(Vtk, LowerCaseKeywords) {
     auto text = replaced(rows, "ASCII", "ascii");
     for (const auto* word : {"DATASET UNSTRUCTURED_GRID", "POINTS", "CELLS", "CELL_TYPES", "FIELD"}) {

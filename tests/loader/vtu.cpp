@@ -88,6 +88,7 @@ struct Example {
     std::vector<std::int64_t> connectivity = {0, 1, 2, 0, 1, 2, 3, 4, 3, 2, 1};
     std::vector<std::int64_t> offsets = {3, 7, 11};
     std::vector<std::int64_t> types = {5, 10, 10};
+    std::vector<double> pressures = {}; ///< empty: no such array
     std::string appended = {};
 
     template<class Values>
@@ -122,7 +123,9 @@ struct Example {
             how.compressed ? " compressor=\"vtk" + compressors[how.packer] + "DataCompressor\">\n" : ">\n";
         text += "<UnstructuredGrid>\n<Piece NumberOfPoints=\"6\" NumberOfCells=\"3\">\n<PointData>\n";
         text += "<DataArray type=\"Float32\" Name=\"s\" "
-                "format=\"ascii\">nan</DataArray>\n</PointData>\n<Points>\n";
+                "format=\"ascii\">nan</DataArray>\n";
+        if (!pressures.empty()) text += array("Name=\"pressure\"", real, pressures, how);
+        text += "</PointData>\n<Points>\n";
         text += array("Name=\"Points\" NumberOfComponents=\"3\"", real, points, how) + "</Points>\n<Cells>\n";
         text += array("Name=\"connectivity\"", whole, connectivity, how);
         text += array("Name=\"offsets\"", whole, offsets, how);
@@ -190,6 +193,68 @@ TEST(Vtu, PiecesAppend) {
     EXPECT_EQ(mesh.vertices.size(), 12u);
     EXPECT_EQ(mesh.tetrahedra.size(), 4u);
     EXPECT_EQ(mesh.tetrahedra.back(), (Tetrahedron{10, 9, 8, 7}));
+}
+
+const std::vector<double> example_pressures{0, 0.5, 1.25, 0, 3e7, 0.125};
+
+TEST(Vtu, Pressures) {
+    for (const auto format : {Encoding::ascii, Encoding::inlined, Encoding::appended, Encoding::raw})
+        for (const int bits : {0, 1, 2, 3, 4, 5, 6, 7}) {
+            SCOPED_TRACE(std::to_string(format) + " " + std::to_string(bits));
+            const Encoding how{format, (bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0};
+            Example given{.pressures = example_pressures};
+            if (format == Encoding::ascii) given.points[17] = 0; // std::to_string keeps six digits
+            auto mesh = read_mesh(write_file("pressures.vtu", given.file(how)));
+            if (format == Encoding::ascii) mesh.vertices[5].z() = -3e-7;
+            expect_example(mesh, format != Encoding::ascii && !how.wide);
+            EXPECT_EQ(mesh.pressures, example_pressures);
+        }
+}
+
+/// An array of that name in other places, and of another name, is no pressure.
+TEST(Vtu, OtherArraysAreNoPressures) {
+    for (const auto* place : {"<CellData>", "<FieldData>", "<PointData/><FieldData>"}) {
+        const auto section = std::string(place).substr(std::string(place).rfind('<') + 1);
+        const auto array = "<DataArray type=\"Float32\" Name=\"pressure\" format=\"ascii\">1 2 3</DataArray>";
+        const auto text =
+            replaced(ascii(), "<Points>", std::string(place) + array + "</" + section + "<Points>");
+        EXPECT_TRUE(read_mesh(write_file("elsewhere.vtu", text)).pressures.empty()) << place;
+    }
+}
+
+TEST(Vtu, BadPressures) {
+    const auto text = [](const std::string& array, const std::string& attributes = "") {
+        return replaced(ascii(), "</PointData>",
+                        "<DataArray type=\"Float64\" Name=\"pressure\" " + attributes + " format=\"ascii\">"
+                            + array + "</DataArray>\n</PointData>");
+    };
+    const std::string one = "NumberOfComponents=\"1\"", three = "NumberOfComponents=\"3\"";
+    EXPECT_EQ(read_mesh(write_file("one.vtu", text("0 1 2 3 4 5", one))).pressures.size(), 6u);
+    expect_failure("three.vtu", text("0 1 2 3 4 5", three), ":8", "pressure has '3' components");
+    expect_failure("few.vtu", text("0 1 2 3 4"), ":8", "6 pressures announced");
+    expect_failure("many.vtu", text("0 1 2 3 4 5 6"), ":8", "more numbers than announced");
+    expect_failure("nan.vtu", text("0 1 2 3 nan 5"), ":8", "a pressure 'nan' is not finite");
+    expect_failure("negative.vtu", text("0 1 2 3 -4 5"), ": ", "the pressure of vertex 4 is -4");
+    Example infinite{.pressures = example_pressures};
+    infinite.pressures[4] = std::numeric_limits<double>::infinity();
+    expect_failure("infinite.vtu", infinite.file({.wide = true}), ":8: DataArray 'pressure': byte 32",
+                   "a pressure is not finite");
+}
+
+TEST(Vtu, AllPiecesHavePressuresOrNone) {
+    const auto with = Example{.pressures = example_pressures}.file({}), without = Example().file({});
+    const auto pieces = [](const std::string& first, const std::string& second) {
+        const auto start = second.find("<Piece Number"), end = first.find("</UnstructuredGrid>");
+        return first.substr(0, end) + second.substr(start);
+    };
+    auto twice = example_pressures;
+    twice.insert(twice.end(), example_pressures.begin(), example_pressures.end());
+    EXPECT_EQ(read_mesh(write_file("both.vtu", pieces(with, with))).pressures, twice);
+    const std::string empty = "<Piece NumberOfPoints=\"0\" NumberOfCells=\"0\"></Piece>\n</UnstructuredGrid>";
+    EXPECT_EQ(read_mesh(write_file("empty.vtu", replaced(with, "</UnstructuredGrid>", empty))).pressures,
+              example_pressures);
+    expect_failure("first.vtu", pieces(with, without), ":29", "a Piece lacks point data pressure");
+    expect_failure("second.vtu", pieces(without, with), ":26", "a Piece has point data pressure");
 }
 
 TEST(Vtu, OtherCells) {

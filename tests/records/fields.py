@@ -43,7 +43,7 @@ NULLABLE_PATHS = {
     *(("environment", name) for name in ("processor", "sources")),
     *(("error", name) for name in ("truth", "rounding")),
     *(("error", "truth", name) for name in ("contacts", "drift")),
-    ("scene", "reading", "weld"),
+    *(("scene", "reading", name) for name in ("weld", "pressure")),
     *(("conditions", when, "processor", name) for when in ("before", "after") for name in OF_CONDITION),
     *(("conditions", when, "gpus", 0) for when in ("before", "after")),
     *(("sampling", name) for name in OF_SAMPLING),

@@ -31,6 +31,9 @@ struct LinearField {
         }
         error = 8 * unit_roundoff<Real> * (sum * (1 + longest / least));
     }
+
+    /// `offset`: from the first corner.
+    Real at(const Vector<Real>& offset) const { return at_first + dot(gradient, offset); }
 };
 
 /// 5 pi / 8 is the largest angle between a polygon's normal and a gradient.
@@ -142,8 +145,10 @@ PressurePolygon<Real> pressure_polygon(const ReferencePair<Real>& pair) {
     measure(result);
     merge_equal(result.corners);
     if (!(result.area > 0) || result.corners.size() < 3) return {};
-    const Real at_centroid = a.at_first + dot(a.gradient, result.centroid - pair.solids[0].corners[0]);
-    result.pressure = std::min(std::max(at_centroid, low), high) / scale;
+    const auto& first = pair.solids[0].corners[0];
+    result.pressure = std::clamp(a.at(result.centroid - first), low, high) / scale;
+    for (const auto& corner : result.corners)
+        result.pressures.push_back(std::clamp(a.at(corner - first), low, high) / scale);
     return result;
 }
 

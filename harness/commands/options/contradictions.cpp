@@ -51,6 +51,8 @@ constexpr Rule rules[] = {
      "no cell is measured, so there are no contacts to write"},
     {"--dry-run", OptionRule::excludes_other, "--dump-distances",
      "no cell is measured, so there are no distances to write"},
+    {"--dry-run", OptionRule::excludes_other, "--dump-surfaces",
+     "no cell is measured, so there are no surfaces to write"},
     {"--columns=GB/s", OptionRule::excludes_other, "--no-count",
      "the bytes of some kernels follow from counters"},
     {"--dry-run", OptionRule::excludes_other, "--columns", "no cell is measured, so there is no table"},

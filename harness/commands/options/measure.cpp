@@ -294,6 +294,10 @@ Action add_run(CLI::App& app) {
         "--dump-distances", options.dump_distances,
         "write the distances of the first finished cell (contact_rule=distance), with both points, to "
         "this CSV file");
+    app.add_option(
+        "--dump-surfaces", options.dump_surfaces,
+        "write the contact surfaces of the first finished cell (contact_rule=pressure), with their "
+        "corners, to this VTK file (.vtp)");
     app.add_option("--trace", options.trace, trace_help);
     app.add_flag("!--no-count", options.count, "skip the replay that counts work");
     app.add_flag("!--no-check", options.check, "do not compare with the reference");

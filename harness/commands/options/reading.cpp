@@ -14,6 +14,9 @@ constexpr auto duplicates_help =
 constexpr auto weld_help =
     "vertices at most this far apart count as one for boundary faces, duplicates and setting self; "
     "coordinates stay (default: no welding)";
+constexpr auto pressure_help = "give meshes without a pressure field one: MODULUS times the distance from "
+                               "the boundary, over the largest "
+                               "such distance (default: they have none)";
 constexpr auto corners_help = "read tetrahedra of higher order by their corners (default: refuse them)";
 constexpr auto only_help = "leave out volume cells that are not tetrahedra (default: refuse them)";
 
@@ -33,6 +36,11 @@ void add_reading_options(CLI::App& app, MeshReading& reading) {
            "--weld", [&reading](double tolerance) { reading.weld = checked_weld(tolerance, "--weld"); },
            weld_help)
         ->option_text("TOLERANCE");
+    app.add_option_function<double>(
+           "--pressure",
+           [&reading](double modulus) { reading.pressure = checked_pressure(modulus, "--pressure"); },
+           pressure_help)
+        ->option_text("MODULUS");
     app.add_flag("--corners", reading.corners, corners_help);
     app.add_flag("--only-tetrahedra", reading.only_tetrahedra, only_help);
 }

@@ -10,7 +10,8 @@ class App;
 
 namespace tandem {
 
-/// Adds --duplicates, --weld, --corners and --only-tetrahedra. `reading` must outlive the parsing.
+/// Adds --duplicates, --weld, --pressure, --corners and --only-tetrahedra. `reading` must outlive the
+/// parsing.
 void add_reading_options(CLI::App& app, MeshReading& reading);
 
 } // namespace tandem

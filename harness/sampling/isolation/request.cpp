@@ -9,19 +9,21 @@ namespace {
 
 /// The options that select the scene, its frames and the check.
 nlohmann::json options_json(const RunOptions& options) {
-    return {{"scene", options.scene},
-            {"meshes", options.meshes},
-            {"poses", options.poses},
-            {"frames", options.frames},
-            {"degenerate", static_cast<int>(options.degenerate)},
-            {"duplicates", static_cast<int>(options.reading.duplicates)},
-            {"weld", options.reading.weld ? nlohmann::json(*options.reading.weld) : nlohmann::json()},
-            {"corners", options.reading.corners},
-            {"only_tetrahedra", options.reading.only_tetrahedra},
-            {"memory", options.memory},
-            {"truth", static_cast<int>(options.truth)},
-            {"truth_contacts", options.truth_contacts},
-            {"check_afresh", options.check_afresh}};
+    return {
+        {"scene", options.scene},
+        {"meshes", options.meshes},
+        {"poses", options.poses},
+        {"frames", options.frames},
+        {"degenerate", static_cast<int>(options.degenerate)},
+        {"duplicates", static_cast<int>(options.reading.duplicates)},
+        {"weld", options.reading.weld ? nlohmann::json(*options.reading.weld) : nlohmann::json()},
+        {"pressure", options.reading.pressure ? nlohmann::json(*options.reading.pressure) : nlohmann::json()},
+        {"corners", options.reading.corners},
+        {"only_tetrahedra", options.reading.only_tetrahedra},
+        {"memory", options.memory},
+        {"truth", static_cast<int>(options.truth)},
+        {"truth_contacts", options.truth_contacts},
+        {"check_afresh", options.check_afresh}};
 }
 
 void read_options(RunOptions& options, const nlohmann::json& json) {
@@ -32,6 +34,7 @@ void read_options(RunOptions& options, const nlohmann::json& json) {
     options.degenerate = static_cast<Degenerate>(json.at("degenerate").get<int>());
     options.reading.duplicates = static_cast<Duplicates>(json.at("duplicates").get<int>());
     if (!json.at("weld").is_null()) options.reading.weld = json.at("weld").get<double>();
+    if (!json.at("pressure").is_null()) options.reading.pressure = json.at("pressure").get<double>();
     json.at("corners").get_to(options.reading.corners);
     json.at("only_tetrahedra").get_to(options.reading.only_tetrahedra);
     json.at("memory").get_to(options.memory);

@@ -111,7 +111,8 @@ def _read(path):
         points, tetrahedra = reader(path)
         return meshio.Mesh(points, [("tetra", tetrahedra)])
     given = _by_meshio(path)
-    return meshio.Mesh(given.points, given.cells)
+    field = {name: given.point_data[name] for name in given.point_data if name == "pressure"}
+    return meshio.Mesh(given.points, given.cells, point_data=field)
 
 
 def _vtu(mesh):

@@ -27,6 +27,7 @@ OWN_OPTIONS = (
     "--dump-pairs",
     "--dump-contacts",
     "--dump-distances",
+    "--dump-surfaces",
     "--trace",
     "--profile",
 )

@@ -14,7 +14,7 @@ from ..errors import OutputError
 from ..files import temporary_folder
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-OPTIONS = ("mesh", "pose", "frames", "every", "device", "duplicates", "weld")
+OPTIONS = ("mesh", "pose", "frames", "every", "device", "duplicates", "weld", "pressure")
 FLAGS = ("contacts", "corners", "only_tetrahedra")
 
 
@@ -30,6 +30,7 @@ def add_options(parser):
     )
     add("--duplicates", metavar="merge|keep|reject", help="of mesh files, as in 'tandem export'")
     add("--weld", metavar="TOLERANCE", help="of mesh files, as in 'tandem export'")
+    add("--pressure", metavar="MODULUS", help="of mesh files, as in 'tandem export'")
     for name in ("corners", "only-tetrahedra"):
         add(f"--{name}", action="store_true", help="of mesh files, as in 'tandem export'")
     add("--contacts", action="store_true", help="show contacts and normals in every frame")

@@ -332,7 +332,8 @@ TEST(ContactsPressure, OfTwoFieldsThatRiseTowardsEachOtherItIsInTheMiddle) {
     EXPECT_DOUBLE_EQ(rows[0].point[0], 1. / 3);
     EXPECT_DOUBLE_EQ(rows[0].point[1], 1. / 3);
     EXPECT_EQ(rows[0].point[2], 1);
-    const auto corners = polygon_of_equal_pressure(a, b);
+    const auto [corners, pressures] = polygon_of_equal_pressure(a, b);
+    EXPECT_EQ(pressures, (std::vector<double>(3, 1)));
     EXPECT_EQ(std::set(corners.begin(), corners.end()),
               (std::set<std::array<double, 3>>{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}));
     EXPECT_TRUE(rows_of(b, b).empty());

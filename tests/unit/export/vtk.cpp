@@ -83,6 +83,24 @@ TEST_F(ExportVtk, BodiesRoundTrip) {
     EXPECT_EQ(array_of<std::uint32_t>(file, "chunk"), chunk);
 }
 
+TEST_F(ExportVtk, PressuresRoundTrip) {
+    auto scene = crowd(5, 6, 3);
+    for (auto& mesh : scene.meshes) mesh.pressures.clear();
+    write_vtu(path("none.vtu"), scene, scene.frame(0));
+    EXPECT_TRUE(read_mesh(path("none.vtu")).pressures.empty());
+    for (auto& mesh : scene.meshes)
+        for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+            mesh.pressures.push_back(1e7 / (3.0 + static_cast<double>(v)));
+    write_vtu(path("all.vtu"), scene, scene.frame(1));
+    std::vector<double> expected;
+    for (const auto& body : scene.bodies)
+        for (const double pressure : scene.meshes[body.mesh].pressures) expected.push_back(pressure);
+    EXPECT_EQ(read_mesh(path("all.vtu")).pressures, expected);
+    scene.meshes[0].pressures.clear();
+    write_vtu(path("some.vtu"), scene, scene.frame(1));
+    EXPECT_TRUE(read_mesh(path("some.vtu")).pressures.empty());
+}
+
 TEST_F(ExportVtk, LongArraysAreWrittenInBlocks) {
     auto scene = crowd(5, 2, 3);
     Mesh& mesh = scene.meshes[0];

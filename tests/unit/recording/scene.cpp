@@ -15,8 +15,8 @@ class RecordingScene : public FolderTest {
 protected:
     /// Records frames of a pile, starting at the pile's frame `first`.
     static void record(const std::string& file, const std::string& specification, std::size_t first,
-                       std::size_t frames) {
-        const auto scene = make_scene(specification);
+                       std::size_t frames, const MeshReading& reading = {}) {
+        const auto scene = make_scene(specification, reading);
         auto writer = RecordingWriter::create(file, recording_of(specification, scene, 0.25));
         for (std::size_t i = 0; i < frames; ++i)
             writer.append(i, 0.25 * static_cast<double>(i), scene.frame(first + i));
@@ -68,6 +68,25 @@ TEST_F(RecordingScene, ItsDigestCoversEveryFrame) {
     EXPECT_NE(make_scene(path("other.frames")).digest, digest);
 }
 
+/// Motion does not depend on a field, so that any recording can be given one. A field of the recorded scene
+/// is kept or missed.
+TEST_F(RecordingScene, PressureFields) {
+    const std::string pile = "pile:bodies=2,refine=1";
+    record(file_, pile, 0, 2);
+    const auto plain = make_scene(file_);
+    EXPECT_TRUE(plain.meshes[0].pressures.empty());
+    const auto given = make_scene(file_, {.pressure = 1e7});
+    EXPECT_EQ(given.meshes[0].pressures, make_scene(pile, {.pressure = 1e7}).meshes[0].pressures);
+    EXPECT_NE(given.digest, plain.digest);
+    EXPECT_NE(given.digest, make_scene(file_, {.pressure = 2e7}).digest);
+    EXPECT_NE(given.key, plain.key);
+    record(path("with.frames"), pile, 0, 2, {.pressure = 1e7});
+    EXPECT_FALSE(make_scene(path("with.frames"), {.pressure = 1e7}).meshes[0].pressures.empty());
+    for (const auto& reading : {MeshReading{}, MeshReading{.pressure = 2e7}})
+        EXPECT_THAT(message_of([&] { make_scene(path("with.frames"), reading); }),
+                    HasSubstr("give --duplicates, --weld and --pressure as its simulation had them"));
+}
+
 TEST_F(RecordingScene, OfADescription) {
     record(file_, description("[0, 0, 0.1]"), 0, 3);
     const auto scene = make_scene(file_);
@@ -78,7 +97,7 @@ TEST_F(RecordingScene, OfADescription) {
     EXPECT_THAT(message_of([&] { make_scene(file_); }),
                 MatchesRegex(
                     ".*drift.frames: was recorded from a scene with digest [0-9a-f]+, but .*two.json now has "
-                    "[0-9a-f]+; restore that scene, give --duplicates .* or record again"));
+                    "[0-9a-f]+; restore that scene, give --duplicates, .* or record again"));
     std::filesystem::remove(path("two.json"));
     EXPECT_THAT(message_of([&] { make_scene(file_); }),
                 MatchesRegex(".*drift.frames: its scene cannot be made again: .*two.json: cannot be read.*"));
