@@ -255,6 +255,22 @@ void apply_plan(CLI::App& app, RunOptions& options) {
     }
 }
 
+void add_dumps(CLI::App& app, RunOptions& options) {
+    app.add_option("--dump-pairs", options.dump_pairs,
+                   "write the candidate pairs of the first finished cell to this CSV file");
+    app.add_option("--dump-contacts", options.dump_contacts,
+                   "write the contacts of the first finished cell to this CSV file");
+    app.add_option(
+        "--dump-distances", options.dump_distances,
+        "write the distances of the first finished cell (contact_rule=distance), with both points, to "
+        "this CSV file");
+    app.add_option(
+        "--dump-surfaces", options.dump_surfaces,
+        "write the contact surfaces of the first finished cell (contact_rule=pressure), with their "
+        "corners, to this VTK file (.vtp)");
+    app.add_option("--trace", options.trace, trace_help);
+}
+
 } // namespace
 
 Action add_run(CLI::App& app) {
@@ -286,19 +302,7 @@ Action add_run(CLI::App& app) {
     app.add_option("--profile", options.profile,
                    "replay the frames N times and measure nothing, for an external profiler")
         ->check(CLI::Range(1, 1000000));
-    app.add_option("--dump-pairs", options.dump_pairs,
-                   "write the candidate pairs of the first finished cell to this CSV file");
-    app.add_option("--dump-contacts", options.dump_contacts,
-                   "write the contacts of the first finished cell to this CSV file");
-    app.add_option(
-        "--dump-distances", options.dump_distances,
-        "write the distances of the first finished cell (contact_rule=distance), with both points, to "
-        "this CSV file");
-    app.add_option(
-        "--dump-surfaces", options.dump_surfaces,
-        "write the contact surfaces of the first finished cell (contact_rule=pressure), with their "
-        "corners, to this VTK file (.vtp)");
-    app.add_option("--trace", options.trace, trace_help);
+    add_dumps(app, options);
     app.add_flag("!--no-count", options.count, "skip the replay that counts work");
     app.add_flag("!--no-check", options.check, "do not compare with the reference");
     add_check_afresh(app, options);
