@@ -44,6 +44,51 @@ class Pressures(ColliderCase):
         self.assertEqual({warning.filename for warning in caught} - {__file__}, set())
         return result, [str(warning.message) for warning in caught]
 
+    def test_surfaces_and_wrenches(self):
+        mesh = tandem.make_mesh(*self.arrays, pressures=FIELD)
+        turned = [POSES[0], [0.3, 0.2, 0.1, 0.8, 0.6, 0, 0]]
+        for device in DEVICES:
+            given = {"device": device, "precision": "double"}
+            found = (
+                self.collider([mesh, mesh], contact_rule="pressure", **given)
+                .run(turned)
+                .surfaces(corners=True)
+            )
+            self.assertGreater(len(found.pairs), 10)
+            self.assertEqual(found.ends[-1], len(found.corners))
+            self.assertEqual(len(found.corner_pressures), len(found.corners))
+            first = 0
+            for end, area, normal, pressure in zip(found.ends, found.areas, found.normals, found.pressures):
+                corners, at_corners = found.corners[first:end], found.corner_pressures[first:end]
+                first = end
+                sides = corners[1:] - corners[0]
+                twice = numpy.cross(sides[:-1], sides[1:]).sum(axis=0)
+                self.assertAlmostEqual(numpy.linalg.norm(twice) / 2, area, 12)
+                self.assertAlmostEqual(abs(twice @ normal) / 2, area, 12)
+                self.assertTrue(at_corners.min() - 1e-6 <= pressure <= at_corners.max() + 1e-6)
+            sums = self.collider([mesh, mesh], output="wrenches", **given).run(turned).wrenches()
+            forces = found.normals * (found.areas * found.pressures)[:, None]
+            self.assertEqual(sums.bodies.tolist(), [[0, 1]])
+            self.assertEqual(sums.polygons.tolist(), [len(found.pairs)])
+            self.assertLess(abs(sums.forces[0] - forces.sum(axis=0)).max(), 1e-5)
+            torque = numpy.cross(found.centroids - turned[0][:3], forces).sum(axis=0)
+            self.assertLess(abs(sums.torques[0] - torque).max(), 1e-5)
+            self.assertAlmostEqual(sums.areas[0], found.areas.sum(), 12)
+
+    def test_each_rule_has_its_function(self):
+        mesh = tandem.make_mesh(*self.arrays, pressures=FIELD)
+        polygons = self.collider([mesh, mesh], contact_rule="pressure").run(POSES)
+        with self.assertRaisesRegex(
+            ValueError, r"makes polygons, not contacts; call surfaces\(\) or wrenches"
+        ):
+            polygons.contacts()
+        with self.assertRaisesRegex(ValueError, "output=pairs adds no wrenches up"):
+            polygons.wrenches()
+        with self.assertRaisesRegex(ValueError, "contact_rule=sat and output=pairs make no polygons"):
+            self.collider([mesh, mesh]).run(POSES).surfaces()
+        with self.assertRaisesRegex(ValueError, "output=wrenches make no polygons"):
+            self.collider([mesh, mesh], output="wrenches").run(POSES).surfaces()
+
     def test_every_kind_of_mesh_has_one(self):
         points, tets = self.arrays
         cells = [("tetra", tets)]

@@ -6,6 +6,8 @@ cases, a baseline."""
 import itertools
 import json
 
+import meshio
+
 from tests.program import LONG, SMALL, Case, bar, gmsh, sets, tandem
 
 
@@ -197,6 +199,33 @@ class Answers(Case):
                 for row in rows
             }
         self.assertEqual(found["pairs"], found["distances"], "the least of each pair of bodies")
+
+    def test_dumps_of_surfaces(self):
+        """The polygons of a table, of a VTK file and of sums are the same."""
+        path, vtp, out, sums = (self.work / name for name in ("s.csv", "s.vtp", "s.jsonl", "w.csv"))
+        given = (
+            "run pile:bodies=4,refine=1,density=0.5 --pressure 1e6 --frames 0:1 --repeat 1 --algorithm tiled"
+        )
+        self.output(
+            f"{given} --set contact_rule=pressure --dump-contacts {path} --dump-surfaces {vtp} --out {out}"
+        )
+        rows, ids = self.dump(path, "frame,body_a,tet_a,body_b,tet_b,cx,cy,cz,nx,ny,nz,area,pressure")
+        self.assertEqual(len(rows), sum(self.records(out)[0]["work"]["contacts"]))
+        self.assertEqual(len(set(ids)), len(ids), "one a pair")
+        grid = meshio.read(vtp)
+        cells = sum(len(block.data) for block in grid.cells)
+        self.assertEqual(cells, len(rows))
+        self.assertTrue(0 <= grid.point_data["pressure"].min() <= grid.point_data["pressure"].max() <= 1e6)
+        self.output(f"{given} --set output=wrenches --dump-contacts {sums}")
+        header = "frame,body_a,tet_a,body_b,tet_b,fx,fy,fz,mx,my,mz,area,polygons"
+        for row in self.dump(sums, header)[0]:
+            own = [r for r in rows if (r[0], r[1], r[3]) == (row[0], row[1], row[3])]
+            self.assertEqual(len(own), int(row[12]))
+            area = sum(float(r[11]) for r in own)
+            self.assertAlmostEqual(float(row[11]) / area, 1, 5)
+            for axis in range(3):
+                force = sum(float(r[8 + axis]) * float(r[11]) * float(r[12]) for r in own)
+                self.assertLess(abs(float(row[5 + axis]) - force), 1e-5 * 1e6 * area)
 
     def test_tiny_capacities_retry(self):
         out = self.work / "tiny.jsonl"

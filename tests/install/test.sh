@@ -75,6 +75,11 @@ distances=$("$work/consumer/distances")
 step 1: 0.265 from 1.000 0.000 0.000 to 1.250 0.063 0.063
 step 2: 0.072 from 0.958 0.021 0.021 to 1.000 0.062 0.062
 step 3: -0.072 from 0.792 0.104 0.104 to 0.750 0.063 0.063" ] || { echo "distances: $distances" >&2; exit 1; }
+surfaces=$("$work/consumer/surfaces")
+[ "$surfaces" = "step 0: no contact
+step 1: 9 polygons, area 0.0622, force on the lower one -1139 -326 -2224
+step 2: 9 polygons, area 0.5903, force on the lower one -18717 -8138 -89247
+step 3: 21 polygons, area 2.1774, force on the lower one -57129 -26367 -342936" ] || { echo "surfaces: $surfaces" >&2; exit 1; }
 [ -s "$work"/prefix/share/doc/tandem/LICENSE ]
 [ -s "$work"/prefix/share/doc/tandem/NOTICE.md ]
 # A component that this build has not is refused by name.
