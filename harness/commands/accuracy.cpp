@@ -47,11 +47,14 @@ std::vector<Axis> axes_of_bounds(const Traversal& traversal) {
             {"rounding", choices(traversal, "rounding")}};
 }
 
-/// Settings that affect contacts: precision, decision, rule.
+/// Settings that affect contacts: precision, decision, rule, without rules that need a pressure field.
 std::vector<Axis> axes_of_contacts(const Traversal& traversal) {
+    auto rules = choices(traversal, "contact_rule", "none");
+    for (const auto& word : parameters::contact_rule.choices())
+        if (needs_pressures(static_cast<ContactRule>(word.value))) std::erase(rules, word.text);
     return {{"precision", choices(traversal, "precision")},
             {"decision", choices(traversal, "decision", "usual")}, // one of the others
-            {"contact_rule", choices(traversal, "contact_rule", "none")}};
+            {"contact_rule", std::move(rules)}};
 }
 
 /// The default settings are in both sweeps; such a cell is measured once.
@@ -123,19 +126,21 @@ std::string p99(const std::vector<double>& samples) {
 }
 
 void print_header() {
-    put("{:>9} {:>9} {:>9} {:>10} {:>10} {:>9} {:>10} {:>9} {:>9} {:>9} {:>9}  cell\n", "ms/frame", "missed",
-        "lost", "false", "ratio", "no answer", "depth/uL", "degrees", "point/L", "volume", "dist/uL");
+    put("{:>9} {:>9} {:>9} {:>10} {:>10} {:>9} {:>10} {:>9} {:>9} {:>9} {:>9} {:>9}  cell\n", "ms/frame",
+        "missed", "lost", "false", "ratio", "no answer", "depth/uL", "degrees", "point/L", "volume",
+        "dist/uL", "area/uL2");
 }
 
 /// Errors of contacts are 99th percentiles.
 void print_row(const Cell& cell, const Measurement& m) {
     const auto& e = *m.errors;
     const auto contacts = e.contacts.value_or(ContactErrors{});
-    put("{:>9.3g} {:>9} {:>9} {:>10} {:>10} {:>9} {:>10} {:>9} {:>9} {:>9} {:>9}  {}{}\n", frame_ms(m),
+    put("{:>9.3g} {:>9} {:>9} {:>10} {:>10} {:>9} {:>10} {:>9} {:>9} {:>9} {:>9} {:>9}  {}{}\n", frame_ms(m),
         e.missed(), e.rounding ? fmt::to_string(e.rounding->lost) : "-", e.pairs.disjoint,
         number(e.candidate_ratio()), contacts.unanswered, p99(contacts.depth_ulps),
         p99(contacts.normal_degrees), p99(contacts.point), p99(contacts.volume_relative),
-        p99(contacts.distance_ulps), describe(cell), e.missed() > 0 ? "  MISSES" : "");
+        p99(contacts.distance_ulps), p99(contacts.polygon_ulps), describe(cell),
+        e.missed() > 0 ? "  MISSES" : "");
 }
 
 /// Measures all cells on one scene, until a record cannot be written or an interrupt. Returns the exit code.

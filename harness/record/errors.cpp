@@ -49,6 +49,12 @@ Fields<AnswerErrors> contact_spreads() {
         "distance_ulps", "|distance - exact| / (u L) of pairs that are apart, of contact_rule=distance",
         &ContactErrors::distance_ulps);
     distance.occurrence.optional = true;
+    auto polygon =
+        spread_field("polygon_ulps",
+                     "|area - exact| / (u L^2) of pairs with a polygon of equal pressure in the answer or "
+                     "exactly, of contact_rule=pressure",
+                     &ContactErrors::polygon_ulps);
+    polygon.occurrence.optional = true;
     return {spread_field("depth_relative",
                          "|deepest - exact| / exact, the exact depth that of the least translation",
                          &ContactErrors::depth_relative),
@@ -64,7 +70,8 @@ Fields<AnswerErrors> contact_spreads() {
                          "Hausdorff distance of contact points and the exact intersection's vertices / L",
                          &ContactErrors::hausdorff),
             volume,
-            distance};
+            distance,
+            polygon};
 }
 
 /// Fields of answers that have contacts.

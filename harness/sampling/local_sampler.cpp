@@ -102,7 +102,9 @@ void LocalSampler::add_errors(Truths& truths, std::size_t index, const FrameResu
     FrameAnswer answer;
     answer.pairs = digest;
     answer.contacts = contacts;
-    answer.makes_contacts = makes_contacts(out_.settings);
+    const bool adds_up = out_.settings[parameters::output] == Output::wrenches;
+    answer.makes_contacts = makes_contacts(out_.settings) && !adds_up;
+    answer.has_polygons = has_polygons(out_.settings) && !adds_up;
     answer.measures = answer.makes_contacts && has_near_pairs(out_.settings[parameters::contact_rule]);
     answer.walked = walked_of(out_.settings);
     answer.self = out_.settings[parameters::self];

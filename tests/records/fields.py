@@ -32,7 +32,7 @@ MAPS = {"settings", "asked", "defines", "counters", "kernel_times", "host_work"}
 NULLABLE = set(
     "chosen failure agreement commit hardware device_span_ns session command registers local_bytes spill_bytes "
     "stack_bytes missed_upper95 candidate_ratio decisions depth_relative depth_ulps normal_degrees point "
-    "hausdorff volume_relative depth_change deep_contact distance_ulps".split()
+    "hausdorff volume_relative depth_change deep_contact distance_ulps polygon_ulps".split()
 )
 OF_CONDITION = (
     "cores quota_cores own_cores other_cores governor mhz throttled_periods pressure_percent".split()
@@ -53,7 +53,7 @@ NULLABLE_PATHS = {
 OPTIONAL_PATHS = {
     *((name,) for name in ("chosen", "partition")),
     *(("sampling", "continued"),),
-    *(("error", "truth", "contacts", name) for name in ("no_volume", "distance_ulps")),
+    *(("error", "truth", "contacts", name) for name in ("no_volume", "distance_ulps", "polygon_ulps")),
 }
 
 

@@ -2,6 +2,7 @@
 #include "harness/verify/accuracy/answer_errors.h"
 
 #include "geometry/exact_distance.h"
+#include "geometry/exact_polygon.h"
 #include "harness/verify/accuracy/hull.h"
 #include "geometry/volume.h"
 #include "base/parallel.h"
@@ -120,6 +121,7 @@ void ContactErrors::add(const ContactErrors& other) {
     append(volume_relative, other.volume_relative);
     no_volume += other.no_volume;
     append(distance_ulps, other.distance_ulps);
+    append(polygon_ulps, other.polygon_ulps);
 }
 
 std::optional<double> AnswerErrors::candidate_ratio() const {
@@ -261,6 +263,47 @@ std::vector<double> distance_errors(const Scene& scene, const Frame& frame, Posi
     for (const auto& error : errors)
         if (error) result.push_back(*error);
     return result;
+}
+
+namespace {
+
+/// The pressures at a tetrahedron's corners; none for a mesh without a field.
+std::optional<std::array<double, 4>> pressures_of(const Scene& scene, std::uint32_t body,
+                                                  std::uint32_t tetrahedron) {
+    const auto& mesh = scene.meshes[scene.bodies[body].mesh];
+    if (mesh.pressures.empty()) return std::nullopt;
+    std::array<double, 4> values;
+    for (unsigned i = 0; i < 4; ++i) values[i] = mesh.pressures[mesh.tetrahedra[tetrahedron][i]];
+    return values;
+}
+
+} // namespace
+
+ContactErrors polygon_errors(const Scene& scene, const Frame& frame, Positions positions,
+                             const PolygonAnswer& answer, double unit, std::size_t most) {
+    const auto& all = answer.truth.overlapping;
+    const auto count = most == 0 ? all.size() : std::min(most, all.size());
+    std::vector<Pair> pairs;
+    for (std::size_t i = 0; i < count; ++i) pairs.push_back(all[i * all.size() / count]);
+    const auto corners = pair_corners(scene, frame, positions, pairs);
+    std::vector<ContactErrors> parts(count);
+    parallel_for(count, [&](std::size_t i) {
+        auto& errors = parts[i];
+        const auto& [a, b] = corners[i];
+        const auto of_a = pressures_of(scene, pairs[i].body_a, pairs[i].tet_a);
+        const auto of_b = pressures_of(scene, pairs[i].body_b, pairs[i].tet_b);
+        errors.overlapping = 1;
+        const auto rows = contacts_of(answer.polygons, pairs[i]);
+        const auto exact = of_a && of_b ? exact_polygon(a, *of_a, b, *of_b) : std::nullopt;
+        if (exact && rows.empty()) errors.unanswered = 1;
+        if (!exact && rows.empty()) return;
+        const double area = rows.empty() ? 0 : rows.front().depth;
+        const double length = std::max(longest_edge(a), longest_edge(b));
+        errors.polygon_ulps = {std::abs(area - (exact ? exact->area : 0)) / (unit * length * length)};
+    });
+    ContactErrors errors;
+    for (const auto& one : parts) errors.add(one);
+    return errors;
 }
 
 } // namespace tandem

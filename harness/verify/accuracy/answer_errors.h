@@ -32,6 +32,9 @@ struct ContactErrors {
     /// |distance - exact| / (u L) of pairs that are apart, of rules that measure distances. Their points are
     /// not those of the intersection, and in no sample.
     std::vector<double> distance_ulps;
+    /// |area - exact| / (u L^2) of overlapping pairs with a polygon of equal pressure in the answer or
+    /// exactly.
+    std::vector<double> polygon_ulps;
 
     void add(const ContactErrors& other);
 };
@@ -93,6 +96,17 @@ double nearest_angle(std::span<const std::array<double, 3>> normals, const std::
 /// measures distances.
 ContactErrors contact_errors(const ContactTruths& truths, std::span<const ContactPoint> contacts, double unit,
                              bool measures = false);
+
+/// Polygons of equal pressure, sorted by pair, and the pairs that overlap.
+struct PolygonAnswer {
+    const FrameTruth& truth;
+    std::span<const ContactPoint> polygons;
+};
+
+/// Errors of the polygons of at most `most` overlapping pairs, evenly spread over their order; 0: all. Pairs
+/// that have one exactly but not in the answer are unanswered.
+ContactErrors polygon_errors(const Scene& scene, const Frame& frame, Positions positions,
+                             const PolygonAnswer& answer, double unit, std::size_t most);
 
 /// Errors of the distances of pairs that are apart, in units of `unit` times the longer edge: of at most
 /// `most` contacts, evenly spread over their order; 0: all.

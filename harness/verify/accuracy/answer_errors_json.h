@@ -12,7 +12,7 @@ TANDEM_FIELDS(PairErrors, candidates, disjoint, touching, overlapping, invalid, 
 TANDEM_FIELDS(DecisionCounts, relations, tiers)
 TANDEM_FIELDS(Drift, vertices, median, p99, max, of_bound)
 TANDEM_FIELDS(ContactErrors, overlapping, unanswered, not_finite, depth_relative, depth_ulps, normal_degrees,
-              point, hausdorff, volume_relative, no_volume, distance_ulps)
+              point, hausdorff, volume_relative, no_volume, distance_ulps, polygon_ulps)
 TANDEM_FIELDS(RoundingErrors, meeting, lost, extra, missed, depth_change)
 TANDEM_FIELDS(AnswerErrors, frames, pairs, decided, invalid_tetrahedra, decisions, contacts, drift,
               every_contact, rounding)

@@ -214,21 +214,29 @@ AnswerErrors Truths::errors_of(const Geometry& geometry, const FramePosition& po
     errors.invalid_tetrahedra = truth.invalid.size();
     if (amount_ == TruthAmount::contacts && position.second == 0) errors.drift = drift_of(geometry);
     if (!answer.makes_contacts) return errors;
+    if (answer.has_polygons && amount_ != TruthAmount::contacts) return errors;
     auto contacts = answer.download_contacts();
-    const auto all = contacts;
-    if (answer.measures) erase_apart(truth, contacts);
+    const double unit = geometry.precision == Precision::fp64 ? 0x1p-53 : 0x1p-24;
+    const auto& [positions, index] = position;
+    const auto frame = range_.frame(index, positions.origin);
+    if (answer.has_polygons) {
+        errors.contacts = polygon_errors(scene_, *frame, positions, {truth, contacts}, unit, most_contacts_);
+        errors.every_contact = errors.contacts->overlapping == truth.overlapping.size();
+        return errors;
+    }
+    std::vector<ContactPoint> apart;
+    if (answer.measures) {
+        apart = contacts;
+        erase_apart(truth, contacts);
+    }
     errors.decisions = decision_matrix(truth, pairs, contacts);
     if (amount_ != TruthAmount::contacts) return errors;
     const auto& exact = contact_truths_of(position, answer.walked, truth);
     errors.every_contact = exact.every;
-    const double unit = geometry.precision == Precision::fp64 ? 0x1p-53 : 0x1p-24;
     errors.contacts = contact_errors(exact, contacts, unit, answer.measures);
-    if (answer.measures) {
-        const auto& [positions, index] = position;
-        const auto frame = range_.frame(index, positions.origin);
+    if (answer.measures)
         errors.contacts->distance_ulps =
-            distance_errors(scene_, *frame, positions, all, unit, most_contacts_);
-    }
+            distance_errors(scene_, *frame, positions, apart, unit, most_contacts_);
     return errors;
 }
 

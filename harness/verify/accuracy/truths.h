@@ -26,6 +26,7 @@ struct FrameAnswer {
     Digest pairs, contacts;
     bool makes_contacts = false;
     bool measures = false;                       ///< distances, also of pairs that are apart
+    bool has_polygons = false;                   ///< of equal pressure, instead of contacts
     Walked walked = Walked::all;                 ///< pairs of other tetrahedra are in no error
     SelfPairs self = SelfPairs::off;             ///< the bodies whose own tetrahedra are paired
     std::function<std::vector<Pair>()> download; ///< sorted

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "scenes/export/surfaces.h"
 #include "scenes/export/vtk.h"
 #include "scenes/motion.h"
 #include "base/base64.h"
@@ -116,8 +117,8 @@ TEST_F(ExportVtk, LongArraysAreWrittenInBlocks) {
 }
 
 TEST_F(ExportVtk, Contacts) {
-    const std::vector<ContactPoint> contacts{{{0, 7, 1, 9}, 3, {1, 2, 3.5}, {0, 0, 1}, -0.25},
-                                             {{2, 4294967295u, 5, 6}, 15, {-1, 0.1, 0}, {1, 0, 0}, 0}};
+    const std::vector<ContactPoint> contacts{{{0, 7, 1, 9}, 3, {1, 2, 3.5}, {0, 0, 1}, -0.25, 0},
+                                             {{2, 4294967295u, 5, 6}, 15, {-1, 0.1, 0}, {1, 0, 0}, 0, 0}};
     write_contacts_vtp(path("c.vtp"), contacts);
     const auto file = bytes_of(path("c.vtp"));
     EXPECT_THAT(file, HasSubstr("NumberOfPoints=\"2\" NumberOfVerts=\"2\""));
@@ -133,6 +134,25 @@ TEST_F(ExportVtk, Contacts) {
     EXPECT_THAT(array_of<std::int64_t>(file, "offsets"), ElementsAre(1, 2));
     write_contacts_vtp(path("none.vtp"), {});
     EXPECT_THAT(array_of<float>(bytes_of(path("none.vtp")), "Points"), ElementsAre());
+}
+
+TEST_F(ExportVtk, Surfaces) {
+    SurfaceFrames all;
+    const std::vector<ContactPoint> rows{{{0, 7, 1, 9}, 3, {1, 2, 3}, {0, 0, 1}, 0.5, 2}};
+    all.add(4, rows, {{{0, 0, 3}, {1, 0, 3}, {0, 1, 3}}, {1, 2, 3}, {3}});
+    all.add(6, rows, {{{0, 0, 4}, {1, 0, 4}, {1, 1, 4}, {0, 1, 4}}, {4, 5, 6, 7}, {4}});
+    const auto file = surfaces_vtp(all);
+    EXPECT_THAT(file, HasSubstr("NumberOfPoints=\"7\""));
+    EXPECT_THAT(file, HasSubstr("NumberOfPolys=\"2\""));
+    const auto points = array_of<double>(file, "Points");
+    EXPECT_EQ(std::vector(points.begin() + 9, points.begin() + 15), (std::vector<double>{0, 0, 4, 1, 0, 4}));
+    EXPECT_THAT(array_of<std::int64_t>(file, "connectivity"), ElementsAre(0, 1, 2, 3, 4, 5, 6));
+    EXPECT_THAT(array_of<std::int64_t>(file, "offsets"), ElementsAre(3, 7));
+    EXPECT_THAT(array_of<double>(file, "pressure"), ElementsAre(1, 2, 3, 4, 5, 6, 7));
+    EXPECT_THAT(array_of<double>(file, "normal"), ElementsAre(0, 0, 1, 0, 0, 1));
+    EXPECT_THAT(array_of<double>(file, "area"), ElementsAre(0.5, 0.5));
+    EXPECT_THAT(array_of<std::uint32_t>(file, "frame"), ElementsAre(4, 6));
+    EXPECT_THAT(array_of<std::uint32_t>(file, "tet_b"), ElementsAre(9, 9));
 }
 
 TEST_F(ExportVtk, Collection) {
