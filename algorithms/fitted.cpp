@@ -80,7 +80,7 @@ void check_polygons(const Settings& settings, const Scene* scene) {
     if (scene != nullptr && std::ranges::none_of(scene->meshes, has_field))
         throw InputError(
             fmt::format("setting contact_rule={} needs a pressure field, and no mesh of scene {} "
-                        "has one; give --pressure MODULUS (pressures= in Python), or a mesh with "
+                        "has one; give --pressure MODULUS (pressure= in Python), or a mesh with "
                         "point data pressure",
                         rule, scene->name));
 }

@@ -149,7 +149,6 @@ int measure_scene(const RunOptions& options, const std::vector<Cell>& cells, Rec
                   std::size_t scenes_after) {
     auto own = options;
     auto scene = open_scene(own);
-    report_findings(scene);
     if (own.frames.empty()) own.frames = middle_frames(scene);
     const Task task(std::move(scene), own, cells);
     print_scene(task);

@@ -182,6 +182,12 @@ void refuse_settings(const Settings& settings) {
     if (settings[parameters::motion] != Motion::none)
         throw InputError("setting motion=linear needs the next frame, which tandem simulate has not computed "
                          "yet; leave it out");
+    const auto rule = settings[parameters::contact_rule];
+    if (has_near_pairs(rule) || needs_pressures(rule))
+        throw InputError(
+            fmt::format("setting contact_rule={} makes no contacts, which tandem simulate resolves; "
+                        "leave it out",
+                        settings.text("contact_rule")));
 }
 
 } // namespace

@@ -279,6 +279,13 @@ class Simulations(SimulationCase):
         self.bad("broken.frames", "simulate", "arch", "--device", "host", "-o", broken, "--resume")
         self.assertEqual(broken.read_bytes(), whole.read_bytes())
 
+    def test_rows_that_are_no_contacts_are_refused(self):
+        for rule in ("distance", "pressure"):
+            self.bad(
+                f"contact_rule={rule} makes no contacts",
+                f"simulate {ARCH} --device host -o {self.work / rule}.frames --pressure 1 --set contact_rule={rule}",
+            )
+
     def test_divergence_is_reported(self):
         record, file = self.work / "simulation-bad.jsonl", self.work / "bad.frames"
         self.bad(

@@ -91,7 +91,8 @@ TEST_P(MemoryLimits, KeepTheAnswerLong) {
             // compiled, it runs one rule.
             const bool is_short = rule % 2 == first && layout == rule / 2 % 2 && (on_host || rule == first);
             if (!every_one && !is_short) continue;
-            SettingTexts given = paths[(turn + first) / 3 % paths.size()];
+            const bool is_resident = needs_pressures(static_cast<ContactRule>(word.value));
+            SettingTexts given = is_resident ? paths.front() : paths[(turn + first) / 3 % paths.size()];
             given.merge(SettingTexts{{"k", "8"},
                                      {"contact_rule", std::string(word.text)},
                                      {"precision", precision},

@@ -190,6 +190,7 @@ inline Scene breathing(std::size_t bodies) {
     Scene scene;
     scene.name = scene.key = "breathing";
     scene.meshes = {shaken_box(2, random)};
+    set_pressures(scene);
     scene.bodies.resize(bodies);
     std::vector<Pose> poses;
     for (std::size_t i = 0; i < bodies; ++i)
