@@ -185,7 +185,7 @@ ValueError | pressure nan: give a modulus                                  | tan
 ValueError | pressure inf: give a modulus                                  | tandem.Collider([own], pressure=float("inf"))
 TypeError  | pressure: type bool; expected a modulus above 0, or None      | tandem.Collider([own], pressure=True)
 TypeError  | pressure: type str; expected a modulus above 0, or None       | tandem.make_mesh(points, tets, pressure="high")
-ValueError | give --pressure MODULUS (pressures= in Python)                | tandem.Collider([(points, tets)] * 2, contact_rule="pressure")
+ValueError | give --pressure MODULUS (pressure= in Python)                | tandem.Collider([(points, tets)] * 2, contact_rule="pressure")
 """
         names = {"points": points, "tets": tets, "nan": nan, "masked": masked, "own": self.own}
         self.expect_mistakes(table, {**names, "tandem": tandem, "numpy": numpy, "FIELD": FIELD})
