@@ -220,7 +220,7 @@ class Queued:
         """(1, 6) int64: a flag (0: the answer is complete), candidate pairs, contacts and body pairs, and with
         output="digest" the sums of the digest. With a flag, counts of what depends on missing rows are too small. Bits of the flag: NO_ROOM, a buffer is too small, and rows beyond
         it are missing; FLAWED, poses or vertices on the device are out of range, such as not a number; EXCEEDED,
-        an error of tandem. run() of the same frame then finds the whole answer, or raises what is wrong."""
+        an error of tandem, or a body too large for output="wrenches". run() of the same frame then finds the whole answer, or raises what is wrong."""
         return self._core.counts
 
     @property
