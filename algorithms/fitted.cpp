@@ -61,7 +61,7 @@ void check_output(const Settings& settings) {
 /// Throws InputError if other settings do not fit polygons of equal pressure, or no mesh has a pressure
 /// field.
 void check_polygons(const Settings& settings, const Scene* scene) {
-    if (!has_polygons(settings)) return;
+    if (!has_polygons(settings) && !bounds_pressures(settings)) return;
     const auto rule = settings.text("contact_rule");
     if (settings[parameters::self] != SelfPairs::off)
         throw InputError(
@@ -83,6 +83,20 @@ void check_polygons(const Settings& settings, const Scene* scene) {
                         "has one; give --pressure MODULUS (pressure= in Python), or a mesh with "
                         "point data pressure",
                         rule, scene->name));
+}
+
+/// Throws InputError if other settings do not fit pressure_slab=on.
+void check_pressure_slab(const Settings& settings, const DeviceInfo& info) {
+    if (!bounds_pressures(settings)) return;
+    if (!needs_pressures(settings[parameters::contact_rule]))
+        throw InputError(fmt::format("setting pressure_slab=on does not go with contact_rule={}, which needs "
+                                     "pairs of all pressures; choose contact_rule=pressure",
+                                     settings.text("contact_rule")));
+    if (info.max_group_size == 1 && settings[parameters::k] != 18)
+        throw InputError(
+            fmt::format("setting pressure_slab=on goes with k=18 on {}, not with k={}; leave k or "
+                        "pressure_slab out",
+                        info.id, settings.text("k")));
 }
 
 /// Throws InputError if other settings do not fit margin or motion=linear.
@@ -144,6 +158,7 @@ Settings Traversal::fitted(const Settings& asked, const DeviceInfo& info, const 
     }
     check_bounds_settings(settings);
     check_polygons(settings, scene);
+    check_pressure_slab(settings, info);
     if (const auto origin = geometry_of(settings).origin;
         origin == Origin::world || is_at_world_origin(scene, origin))
         fitting.set(tandem::parameters::origin(Origin::world));

@@ -5,11 +5,11 @@ headers with the arguments of each kernel.
 A kernel file says in one line of which defines its host code is compiled once for each value, and whether it
 has loops over lanes, which are compiled for several levels of x86-64:
 
-    // Host variants: AXES K PRECISION SLABS=0|1, in lanes; of higher levels: PRECISION=32 SLABS=1
+    // Host variants: AXES K PRECISION PRESSURE_SLAB SLABS=0|1, in lanes; of higher levels: PRECISION=32 SLABS=1
     // Host constants: MOTION PLACEMENT
 
-AXES, K and PRECISION have the values of the build's geometries. Levels above the lowest have only variants with
-the values that follow "of higher levels". All other defines are variables of the host code. Levels above
+AXES, K, PRECISION and PRESSURE_SLAB have the values of the build's geometries. Levels above the lowest have only
+variants with the values that follow "of higher levels", or with others after an "or". All other defines are variables of the host code. Levels above
 x86-64-v2 have these variants twice if the text names constants: once with the defaults of these defines."""
 
 import argparse
@@ -25,7 +25,7 @@ INCLUDE = re.compile(r'^#include "([^"]+)"')
 DEFAULT = re.compile(r"^#ifndef (\w+)\n#define \1 (\d+)$", re.M)
 VARIANTS = re.compile(r"^// Host variants: (.*?)(, in lanes)?(?:; of higher levels: (.*))?$", re.M)
 CONSTANTS = re.compile(r"^// Host constants: (.*)$", re.M)
-OF_GEOMETRY = {"AXES", "K", "PRECISION"}
+OF_GEOMETRY = {"AXES", "K", "PRECISION", "PRESSURE_SLAB"}
 LANES = re.compile(r"^(?!#define|//).*\bFOR_LANES\b|^#define IN_PACKS$", re.M)
 
 
@@ -82,8 +82,8 @@ def sources(kernels, own):
 @dataclasses.dataclass
 class Kernel:
     """A kernel file. text: with its headers. geometry: names of defines that the build gives values for;
-    choices: [["SLABS=0"], ["SLABS=1"]], other defines for each variant; on_higher: values that levels above the
-    lowest are limited to; usual: names of defines whose defaults are constants in variants of their own."""
+    choices: [["SLABS=0"], ["SLABS=1"]], other defines for each variant; on_higher: sets of values, one of which
+    variants of levels above the lowest have; usual: names of defines whose defaults are constants in variants of their own."""
 
     name: str
     text: str
@@ -91,7 +91,7 @@ class Kernel:
     geometry: list = dataclasses.field(default_factory=list)
     choices: list = dataclasses.field(default_factory=list)
     in_lanes: bool = False
-    on_higher: set = dataclasses.field(default_factory=set)
+    on_higher: list = dataclasses.field(default_factory=list)
     usual: list = dataclasses.field(default_factory=list)
 
     def __post_init__(self):
@@ -105,7 +105,10 @@ class Kernel:
         self.choices = list(
             itertools.product(*([f"{name}={value}" for value in values.split("|")] for name, values in lists))
         )
-        self.in_lanes, self.on_higher = bool(lanes), set(on_higher.split())
+        self.in_lanes, self.on_higher = (
+            bool(lanes),
+            [set(values.split()) for values in on_higher.split(" or ")],
+        )
         self.usual = " ".join(CONSTANTS.findall(self.own_text)).split()
         for name in set(self.usual) - dict(DEFAULT.findall(self.text)).keys():
             raise ValueError(f"{self.name}: the text has no default of {name}")
@@ -117,15 +120,16 @@ class Kernel:
             raise ValueError(f"{self.name}: host variants and text differ in whether they have lanes")
 
     def variants(self, geometry):
-        """Defines of the variants in a geometry, "AXES=0,K=8,PRECISION=32"."""
+        """Defines of the variants in a geometry, "AXES=0,K=8,PRECISION=32,PRESSURE_SLAB=0"."""
         own = [pair for pair in geometry.split(",") if pair.partition("=")[0] in self.geometry]
         return [[*own, *choice] for choice in self.choices]
 
     def is_on_higher(self, defines, higher_k):
         """Whether levels above the lowest have this variant, of those values of k in `higher_k` or of all."""
         has = set(defines)
-        is_of_k = not higher_k or "K" not in self.geometry or has & {f"K={k}" for k in higher_k}
-        return self.on_higher <= has and is_of_k
+        slab = 2 if "PRESSURE_SLAB=1" in has else 0
+        is_of_k = not higher_k or "K" not in self.geometry or has & {f"K={int(k) + slab}" for k in higher_k}
+        return any(values <= has for values in self.on_higher) and is_of_k
 
 
 def variant_code(kernel, defines, constants, scope, level):

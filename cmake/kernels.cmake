@@ -28,7 +28,7 @@ function(tandem_levels result)
   set(${result} ${levels} PARENT_SCOPE)
 endfunction()
 
-# tandem_kernels(TARGET K:AXES... [FOLDER F]): flattens each kernel file of algorithms/ with its headers and embeds the
+# tandem_kernels(TARGET K:AXES[:PRESSURE_SLAB]... [FOLDER F]): flattens each kernel file of algorithms/ with its headers and embeds the
 # texts. It also compiles them for the host backend in every listed geometry, in both precisions, and generates a header
 # with the arguments of its kernels for each file, "algorithms/tiled/tiled.cl.h". With FOLDER it takes
 # the kernel files of that folder instead. They register themselves beside the library's at program start, where TARGET
@@ -50,14 +50,16 @@ function(tandem_kernels target)
        ${PROJECT_SOURCE_DIR}/algorithms/*.clh ${PROJECT_SOURCE_DIR}/${folder}/*.clh)
   set(geometries)
   foreach(k_axes ${given_UNPARSED_ARGUMENTS})
-    string(REPLACE ":" ";" pair ${k_axes})
+    string(REPLACE ":" ";" pair ${k_axes}:0)
     list(GET pair 0 k)
     list(GET pair 1 axes)
+    list(GET pair 2 pressure_slab)
     if(TANDEM_HOST_K AND NOT k IN_LIST TANDEM_HOST_K)
       continue()
     endif()
+    math(EXPR ends "${k} + 2 * ${pressure_slab}")
     foreach(precision 32 64)
-      list(APPEND geometries "AXES=${axes},K=${k},PRECISION=${precision}")
+      list(APPEND geometries "AXES=${axes},K=${ends},PRECISION=${precision},PRESSURE_SLAB=${pressure_slab}")
     endforeach()
   endforeach()
   # Several geometries per file: reading the headers takes as long as compiling one geometry.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Overlap of the leaf k-DOPs of an explicit list of tetrahedron pairs, in rows as in pairs.clh. Constructed
 // cases reach the overlap tests of the walks, on refitted nodes, without a walk.
-// Host variants: AXES K PRECISION
+// Host variants: AXES K PRECISION PRESSURE_SLAB
 #include "backends/portable.h"
 #include "algorithms/hierarchy/node.clh"
 #include "algorithms/answer/emit.clh"

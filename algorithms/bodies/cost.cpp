@@ -60,7 +60,7 @@ SceneFacts::SceneFacts(const Scene& scene, const Settings& settings) {
     const auto geometry = geometry_of(settings);
     const bool published = is_published(settings);
     bodies = number(scene.bodies.size());
-    k = geometry.k;
+    k = ends_of_node(geometry);
     real = number(real_bytes(geometry));
     pose_bytes = number(pose_reals(geometry)) * real;
     row_bytes = 4 * number(words_of(settings[parameters::pair_layout]));

@@ -20,9 +20,10 @@ constexpr Direction coordinates[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 constexpr Direction corners[] = {{1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {1, -1, -1}};
 constexpr Direction edges[] = {{1, 1, 0}, {1, -1, 0}, {1, 0, 1}, {1, 0, -1}, {0, 1, 1}, {0, 1, -1}};
 
-constexpr std::array<const Parameter*, 8> declared{
-    &parameters::k,         &parameters::axes,   &parameters::precision, &parameters::rounding,
-    &parameters::placement, &parameters::origin, &parameters::motion,    &parameters::margin};
+constexpr std::array<const Parameter*, 9> declared{
+    &parameters::k,        &parameters::axes,      &parameters::precision,
+    &parameters::rounding, &parameters::placement, &parameters::origin,
+    &parameters::motion,   &parameters::margin,    &parameters::pressure_slab};
 
 } // namespace
 
@@ -58,7 +59,8 @@ Geometry geometry_of(const Settings& settings) {
     geometry.origin = settings[parameters::origin];
     geometry.motion = settings[parameters::motion];
     geometry.margin = settings[parameters::margin];
-    geometry.pressures = has_polygons(settings);
+    geometry.pressure_slab = bounds_pressures(settings);
+    geometry.pressures = has_polygons(settings) || geometry.pressure_slab;
     if (geometry.coordinate_axes && geometry.k != 8)
         throw InputError("setting axes=coordinate goes with k=8 only; leave axes out for other k");
     if (geometry.placement == Placement::exact && geometry.rounding != Rounding::safe
@@ -96,7 +98,8 @@ Defines row_defines(const Geometry& geometry, std::uint32_t group_size) {
 
 Defines geometry_defines(const Geometry& geometry, std::uint32_t group_size) {
     auto defines = row_defines(geometry, group_size);
-    define(defines, parameters::k, geometry.k);
+    define(defines, parameters::k, ends_of_node(geometry));
+    define(defines, parameters::pressure_slab, geometry.pressure_slab);
     define(defines, parameters::axes, geometry.coordinate_axes ? Axes::coordinate : Axes::standard);
     define(defines, parameters::rounding, geometry.rounding);
     if (geometry.margin > 0) defines["MARGIN"] = "1";

@@ -20,16 +20,20 @@ struct Geometry {
     Motion motion = Motion::none;             ///< linear not with published rounding
     double margin = 0;                        ///< 0 with published rounding
     bool pressures = false;                   ///< vertices on devices carry the mesh's pressures
+    bool pressure_slab = false;               ///< nodes have a slab of pressures; only with these
 
     /// Whether all members are equal.
     bool operator==(const Geometry&) const = default;
 };
 
+/// The ends of slabs of a node on devices: k, and two of the slab of pressures.
+inline int ends_of_node(const Geometry& geometry) { return geometry.k + (geometry.pressure_slab ? 2 : 0); }
+
 /// The k / 2 integer directions of a geometry, with components in {-1, 0, 1}, in the order of kernels.
 std::vector<std::array<int, 3>> directions(const Geometry& geometry);
 
-/// The settings that algorithms with k-DOPs declare: k, axes, precision, rounding, placement, origin, motion
-/// and margin.
+/// The settings that algorithms with k-DOPs declare: k, axes, precision, rounding, placement, origin,
+/// motion, margin and pressure_slab.
 std::span<const Parameter* const> geometry_parameters();
 
 /// The geometry of these settings; with placement=exact and precision=double, origin is world. Throws

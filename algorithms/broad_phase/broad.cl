@@ -3,7 +3,7 @@
 // except pairs of two fixed bodies. With SELF also pairs of a moving body with itself. Bodies are in a
 // spatial order, fixed ones last, in tiles of BROAD_TILE. Two tiles are skipped if their unions do not
 // overlap; otherwise all their pairs are tested.
-// Host variants: AXES K PRECISION
+// Host variants: AXES K PRECISION PRESSURE_SLAB
 #include "backends/portable.h"
 #include "algorithms/broad_phase/filters.clh"
 #include "algorithms/broad_phase/tile.clh"

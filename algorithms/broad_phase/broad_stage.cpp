@@ -60,7 +60,7 @@ BroadStage::BroadStage(const Bodies& bodies, const Buffer& volumes, LaunchShape 
     if (has_worlds) defines["WORLDS"] = "1";
     if (tiles_of(count) > 1) compile_kernel(device, bound_, defines);
     compile_kernel(device, find_, defines);
-    const auto volume = static_cast<std::uint64_t>(geometry.k) * real_bytes(geometry);
+    const auto volume = static_cast<std::uint64_t>(ends_of_node(geometry)) * real_bytes(geometry);
     order_ = device.allocate(std::uint64_t{count} * 4, "order of bodies");
     roots_ = device.allocate(count * volume, "root volumes");
     unions_ = device.allocate(tiles_of(count) * volume, "unions of tiles");
@@ -86,7 +86,7 @@ std::vector<Eigen::Vector3d> BroadStage::centres(const Frame& frame) const {
 /// Centres of the volumes along the first three directions, which are linearly independent.
 template<class Real>
 std::vector<Eigen::Vector3d> BroadStage::centres_of_volumes() const {
-    const auto k = static_cast<std::size_t>(bodies_.geometry().k);
+    const auto k = static_cast<std::size_t>(ends_of_node(bodies_.geometry()));
     std::vector<Real> slabs(bodies_.count() * k);
     {
         const StageScope scope(bodies_.device(), Stage::read);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The chunked static scheduler (paper, sections 3.2 and 3.3). The seeds are pairs of chunks, and the
 // assignment of walks to work-items is fixed before the launch. seeds.cl numbers the seeds.
-// Host variants: AXES K PRECISION
+// Host variants: AXES K PRECISION PRESSURE_SLAB
 #include "backends/portable.h"
 #include "algorithms/broad_phase/body_pairs.clh"
 #include "algorithms/chunked/walk.clh"

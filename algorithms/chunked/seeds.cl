@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Numbers the seeds of a frame before the walks. A file of its own, because the walks depend on more
 // settings.
-// Host variants: AXES K PRECISION
+// Host variants: AXES K PRECISION PRESSURE_SLAB
 #include "backends/portable.h"
 #include "algorithms/chunked/seeds.clh"
 

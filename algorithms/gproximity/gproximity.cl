@@ -3,7 +3,7 @@
 // description and the numbers of its two implementations. Every work-group owns a queue of node pairs in
 // global memory. It works on a local queue that it loads from the top of its own queue. A counter of idle
 // groups ends the launch. Balancing then evens out the queues (balance.cl).
-// Host variants: AXES K PRECISION
+// Host variants: AXES K PRECISION PRESSURE_SLAB
 #include "backends/portable.h"
 #include "algorithms/broad_phase/body_pairs.clh"
 #include "algorithms/answer/emit.clh"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Benchmarks of a device's limits, for comparison with the times of walks: memory throughput, and overlap
 // tests of nodes in registers.
-// Host variants: AXES K PRECISION
+// Host variants: AXES K PRECISION PRESSURE_SLAB
 #include "backends/portable.h"
 #include "algorithms/hierarchy/node.clh"
 

@@ -124,7 +124,8 @@ void ChunkTrees::upload_static() {
     tree_table_ = uploaded(device_, bytes_of(trees_), "trees");
     level_table_ = uploaded(device_, bytes_of(level_rows_), "levels");
     upload_jobs();
-    const auto node = static_cast<std::uint64_t>(bodies_.geometry().k) * real_bytes(bodies_.geometry());
+    const auto node =
+        static_cast<std::uint64_t>(ends_of_node(bodies_.geometry())) * real_bytes(bodies_.geometry());
     nodes_ = device_.allocate(slots_ * node, "nodes");
     volumes_ = device_.allocate(bodies_.count() * node, "volumes");
 }

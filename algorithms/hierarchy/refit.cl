@@ -4,7 +4,7 @@
 // It writes them out once, neighbouring work-items to neighbouring words, so that each node reaches device
 // memory once and in whole sectors. Leaves read vertices through the pose, so that rigid bodies store no
 // transformed vertices. Inner nodes are the exact min/max of their children.
-// Host variants: AXES K PRECISION
+// Host variants: AXES K PRECISION PRESSURE_SLAB
 #include "backends/portable.h"
 #include "algorithms/bodies/leaf.clh"
 #include "algorithms/hierarchy/node.clh"

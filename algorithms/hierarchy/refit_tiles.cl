@@ -2,8 +2,8 @@
 // Refit of tiles. A work-group builds up to 32 tiles of one level and their parent tile, from vertices or
 // from the roots of the level below. Each vertex of a tile is transformed once, into local memory, not once
 // per tetrahedron that shares it.
-// Host variants: AXES K PRECISION SLABS=0|1, in lanes; of higher levels: PRECISION=32 SLABS=1
-// Host constants: MARGIN MOTION PLACEMENT ROUNDING
+// Host variants: AXES K PRECISION PRESSURE_SLAB SLABS=0|1, in lanes; of higher levels: PRECISION=32 SLABS=1
+// or K=18 SLABS=1 or PRESSURE_SLAB=1 SLABS=1 Host constants: MARGIN MOTION PLACEMENT ROUNDING
 #include "backends/portable.h"
 #include "algorithms/hierarchy/tiles.clh"
 
@@ -100,7 +100,7 @@ DEVICE void keep_vertices(const Shapes* shapes, const Tile* tile, LOCAL const re
         real slabs[K];
         begin_slabs(slabs);
         for (uint i = lane; i < count; i += (uint)LANES)
-            widen_by_point(point_at(points, i), drift, reach_at(shapes, tile, i), slabs, slabs + DIRECTIONS);
+            widen_by_vertex(shapes, tile, points, i, drift, slabs);
         keep_slabs(slabs, lane, added, bounds);
     }
 }

@@ -2,7 +2,7 @@
 // Bounds and owners of the inner nodes of a tree over a scene (scene_tree.clh), in every frame. Both are
 // those of a range of leaves, which a few boxes and leaves cover exactly. Minima and maxima do not depend on
 // the choice. So each work-item makes whole nodes, and no level of the tree waits for another.
-// Host variants: AXES K PRECISION
+// Host variants: AXES K PRECISION PRESSURE_SLAB
 #include "backends/portable.h"
 #include "algorithms/hierarchy/scene_tree.clh"
 

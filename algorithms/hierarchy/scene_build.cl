@@ -5,7 +5,7 @@
 // ("Maximizing parallelism in the construction of BVHs, octrees, and k-d trees", 2012), ropes those of
 // Prokopenko and Lebrun-Grandie ("Revising Apetrei's bounding volume hierarchy construction algorithm to
 // allow stackless traversal", 2024). Each work-item makes whole nodes, independent of the others.
-// Host variants: AXES K PRECISION
+// Host variants: AXES K PRECISION PRESSURE_SLAB
 #include "backends/portable.h"
 #include "algorithms/hierarchy/scene_tree.clh"
 

@@ -47,7 +47,8 @@ SceneTree::SceneTree(const Bodies& bodies, LaunchShape shape, SelfPairs self, st
       self_(self),
       period_(period) {
     const auto most = std::max(1u, tetrahedra_of(bodies)); // buffers cannot be empty
-    const auto node = static_cast<std::uint64_t>(bodies.geometry().k) * real_bytes(bodies.geometry());
+    const auto node =
+        static_cast<std::uint64_t>(ends_of_node(bodies.geometry())) * real_bytes(bodies.geometry());
     const auto row = row_words * 4;
     const auto boxes = std::max<std::uint64_t>(1, sum(box_levels(most)));
     rows_ = device_.allocate(most * row, "tetrahedra of the scene");
@@ -153,8 +154,9 @@ void SceneTree::build() {
 void SceneTree::bound() {
     const kernels::scene_bounds::CopyLeafBounds copy{
         .nodes = trees_.nodes(), .leaves = leaves_, .count = count_, .bounds = leaf_bounds_};
-    device_.launch(copy_, grid(std::uint64_t{count_} * static_cast<std::uint64_t>(bodies().geometry().k)),
-                   copy);
+    device_.launch(
+        copy_, grid(std::uint64_t{count_} * static_cast<std::uint64_t>(ends_of_node(bodies().geometry()))),
+        copy);
     const auto levels = box_levels(count_);
     for (std::uint32_t level = 1; level <= levels.size();) {
         const std::uint32_t both = level > 1 && level < levels.size() ? 2 : 1;

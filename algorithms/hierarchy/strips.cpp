@@ -16,7 +16,7 @@ constexpr std::uint32_t strip_nodes = 2u << strip_height;
 
 /// Two leaves (in_pairs) or one for each work-item. At least one strip and at most what fits.
 std::uint32_t tile_nodes(const Geometry& geometry, std::uint32_t group_size) {
-    const auto node = static_cast<std::uint64_t>(geometry.k + 2) * real_bytes(geometry) + 8;
+    const auto node = static_cast<std::uint64_t>(ends_of_node(geometry) + 2) * real_bytes(geometry) + 8;
     const auto wanted = std::max(strip_nodes, (in_pairs(geometry) ? 4 : 2) * group_size);
     return std::min(wanted, static_cast<std::uint32_t>(std::bit_floor(tile_bytes / node)));
 }

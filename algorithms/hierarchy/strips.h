@@ -12,7 +12,7 @@ inline constexpr std::uint32_t strip_height = 5;
 
 /// Whether refit_strips makes the nodes of the lowest depth together with their parents (IN_PAIRS of
 /// refit.cl).
-inline bool in_pairs(const Geometry& geometry) { return geometry.k <= 8; }
+inline bool in_pairs(const Geometry& geometry) { return ends_of_node(geometry) <= 8; }
 
 /// Compile-time parameters of refit_strips.
 struct RefitShape {

@@ -47,8 +47,9 @@ TileTrees::TileTrees(const Bodies& bodies, Slabs slabs, SelfPairs self, std::uin
     tops_ = uploaded(device_, bytes_of(top_tiles()), "top tiles");
     const auto& geometry = bodies.geometry();
     const auto real = static_cast<std::uint64_t>(real_bytes(geometry));
-    const auto k = static_cast<std::uint64_t>(geometry.k);
-    const auto leaf_words = slabs == Slabs::three ? std::min<std::uint64_t>(k, 6) : k;
+    const auto k = static_cast<std::uint64_t>(ends_of_node(geometry));
+    const auto leaf_words =
+        slabs == Slabs::three ? std::min<std::uint64_t>(k, geometry.pressure_slab ? 8 : 6) : k;
     leaves_ = device_.allocate(first_upper() * leaf_words * lanes * real, "leaf tiles");
     uppers_ = device_.allocate(std::max<std::uint64_t>(1, tile_count_ - first_upper()) * k * lanes * real,
                                "upper tiles");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Leaf queries: each tetrahedron of the body with fewer ones queries the other body's tree, which is one
 // complete binary tree (heap.clh). All queries of all body pairs are one launch.
-// Host variants: AXES K PRECISION
+// Host variants: AXES K PRECISION PRESSURE_SLAB
 #include "backends/portable.h"
 #include "algorithms/answer/emit.clh"
 #include "algorithms/broad_phase/body_pairs.clh"

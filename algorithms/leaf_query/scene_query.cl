@@ -2,7 +2,7 @@
 // Leaf queries of one tree over all bodies (scene_tree.clh): each leaf finds the leaves behind it that its
 // bounds overlap, so that each pair is found once. A query starts at the rope of its own leaf and follows
 // ropes and left children, without a stack. It leaves out nodes whose leaves are all of its own body.
-// Host variants: AXES K PRECISION
+// Host variants: AXES K PRECISION PRESSURE_SLAB
 #include "backends/portable.h"
 #include "algorithms/answer/emit.clh"
 #include "algorithms/broad_phase/filters.clh"

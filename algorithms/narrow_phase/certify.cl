@@ -54,9 +54,9 @@ DEVICE void ask(const Candidates* all, ulong base, ulong count, LOCAL uint* aske
         const uint before = entry;
         for (uint i = 0; i < present; ++i) { // without a branch, because none would be foreseen
             asked[entry] = (uint)base + i;
-            entry += 1u - lacks_boundary(all, (uint)base + i);
+            entry += 1u - is_left_out(all, (uint)base + i);
         }
-        group[GROUP_WITHOUT] += present - (entry - before);
+        group[GROUP_LEFT_OUT] += present - (entry - before);
     }
     group[GROUP_ASKED] = entry;
 #else
@@ -67,10 +67,10 @@ DEVICE void ask(const Candidates* all, ulong base, ulong count, LOCAL uint* aske
         const ulong index = base + i * GROUP_SIZE;
         const flags is_one = index < count;
         present += BIT(is_one);
-        lacking |= lacks_boundary(all, (uint)(is_one ? index : base)) << i;
+        lacking |= is_left_out(all, (uint)(is_one ? index : base)) << i;
     }
     const uint without = COUNT_ONES(lacking & ((1u << present) - 1u));
-    if (without != 0u) LOCAL_ATOMIC_ADD(group + GROUP_WITHOUT, without);
+    if (without != 0u) LOCAL_ATOMIC_ADD(group + GROUP_LEFT_OUT, without);
     uint entry = without < present ? LOCAL_ATOMIC_ADD(group + GROUP_ASKED, present - without) : 0u;
     UNROLL for (uint i = 0; i < READ_AT_ONCE; ++i) {
         if (i < present && (lacking >> i & 1u) == 0u) asked[entry++] = (uint)(base + i * GROUP_SIZE);

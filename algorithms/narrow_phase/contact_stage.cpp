@@ -15,6 +15,8 @@ namespace {
 constexpr std::uint64_t most_waiting = std::uint64_t{1} << OPEN_PAIR_BITS;
 /// Minimum capacity of the lists when memory is short.
 constexpr std::uint64_t least_waiting = 1024;
+/// Pairs that are worth a work-item of a processor: a few packs.
+constexpr std::uint64_t pairs_an_item = 32;
 
 /// Groups are no larger than the local memory of this stage's kernels allows.
 LaunchShape shape_for(LaunchShape shape, Precision precision) {
@@ -30,6 +32,7 @@ ContactStage::ContactStage(const Bodies& bodies, const ContactSettings& settings
                            Launches launches)
     : bodies_(bodies),
       has_near_(has_near_pairs(settings.rule)),
+      has_polygons_(needs_pressures(settings.rule)),
       margin_(margin_of(settings)),
       shape_(shape_for(shape, bodies.geometry().precision)),
       few_shape_(shape_) {
@@ -39,6 +42,9 @@ ContactStage::ContactStage(const Bodies& bodies, const ContactSettings& settings
     define(defines, parameters::pair_layout, bodies_.pair_layout());
     define(defines, parameters::contact_rule, settings.rule);
     defines["BOUNDARY_NEEDED"] = std::to_string(boundaries_needed(settings.rule));
+    // The walk leaves out pairs without a common pressure, if nodes bound pressures.
+    defines["PRESSURES_NEEDED"] =
+        needs_pressures(settings.rule) && !bodies.geometry().pressure_slab ? "1" : "0";
     if (has_verdicts(settings.decision)) decision_ = std::make_unique<DecisionStage>(bodies, settings, shape);
     const auto decided = [&](bool by_verdicts) { return decided_define(settings.decision, by_verdicts); };
     if (launches == Launches::apart) {
@@ -83,18 +89,21 @@ void ContactStage::reserve(std::uint64_t pairs) {
 }
 
 /// More groups than run at once where a GPU has many pairs for each: pairs take unlike times, and a group
-/// that ends makes room for another.
-LaunchShape ContactStage::apart_shape() const {
+/// that ends makes room for another. On a processor no more than have work, because each costs time.
+LaunchShape ContactStage::apart_shape() {
     auto shape = shape_;
+    if (!expected_) return shape;
     const std::uint64_t many = 4 * std::uint64_t{shape.groups} * shape.group_size;
-    if (bodies_.device().info().is_gpu && expected_ && *expected_ >= many) shape.groups *= 2;
+    if (!bodies_.device().info().is_gpu)
+        shape.groups = groups_.groups_for(*expected_ / (pairs_an_item * shape.group_size), shape.groups);
+    else if (*expected_ >= many)
+        shape.groups *= 2;
     return shape;
 }
 
 /// Lists the pairs that meet. Both lists must be empty before.
-void ContactStage::find_meeting(const Range& range) {
+void ContactStage::find_meeting(const Range& range, LaunchShape shape) {
     auto& device = bodies_.device();
-    const auto shape = apart_shape();
     const Grid grid{shape.groups, shape.group_size};
     const auto& status = range.status;
     const kernels::certify::CertifyPairs certify{.found = range.pairs,
@@ -112,6 +121,7 @@ void ContactStage::find_meeting(const Range& range) {
                                                  .near = list(LIST_NEAR),
                                                  .status = status.buffer()};
     device.launch(certify_, grid, certify);
+    if (has_polygons_) return;
     if (decides_open()) decision_->launch_open(range.pairs, range.first, range.end, list(LIST_OPEN), status);
     const kernels::separate::SeparatePairs separate{.found = range.pairs,
                                                     .first = range.first,
@@ -169,6 +179,7 @@ void ContactStage::launch(const Buffer& pairs, const ContactRows& contacts, std:
         return;
     }
     reserve_lists(end - first);
+    const auto shape = apart_shape();
     const auto lengths = std::span(status.words()).subspan(STATUS_WAITING, STATUS_WAITING_WORDS);
     bool waiting =
         std::ranges::any_of(lengths, [](auto length) { return length != 0; }); // of an earlier launch
@@ -176,8 +187,8 @@ void ContactStage::launch(const Buffer& pairs, const ContactRows& contacts, std:
         if (waiting) device.clear(status.buffer(), STATUS_WAITING_WORDS * 4, STATUS_WAITING * 4);
         const Range range{pairs, static_cast<std::uint32_t>(from),
                           static_cast<std::uint32_t>(std::min(end, from + waiting_.capacity())), status};
-        find_meeting(range);
-        generate(generate_, apart_shape(), range, contacts);
+        find_meeting(range, shape);
+        generate(generate_, shape, range, contacts);
         waiting = true;
     }
 }

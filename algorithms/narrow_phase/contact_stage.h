@@ -39,7 +39,7 @@ public:
 
 private:
     void reserve_lists(std::uint64_t pairs);
-    LaunchShape apart_shape() const;
+    LaunchShape apart_shape();
     /// Rows first..end - 1 of the candidate pairs, and the counts of their frame.
     struct Range {
         const Buffer& pairs;
@@ -47,20 +47,21 @@ private:
         const Status& status;
     };
 
-    void find_meeting(const Range& range);
+    void find_meeting(const Range& range, LaunchShape shape);
     void generate(const KernelOf<kernels::contacts::GenerateContacts>& kernel, LaunchShape shape,
                   const Range& range, const ContactRows& contacts);
     /// Whether only the pairs that certificates leave open need verdicts.
-    bool decides_open() const { return decision_ && decision_->uses_certificates(); }
+    bool decides_open() const { return decision_ && decision_->uses_certificates() && !has_polygons_; }
     const Buffer& verdicts() const { return decision_ ? decision_->verdicts() : nothing_; }
 
     const Buffer& list(std::size_t number) const;
 
     const Bodies& bodies_;
     bool has_near_;                 ///< whether the rule wants pairs apart, too
+    bool has_polygons_;             ///< whether no pair waits for separating axes
     float margin_;                  ///< its setting, rounded up
     LaunchShape shape_, few_shape_; ///< for three launches, for one
-    ExpectedGroups groups_;         ///< for one launch
+    ExpectedGroups groups_;         ///< for one launch on a GPU, and all on a processor
     // The first three are null for Launches::at_once.
     KernelOf<kernels::certify::CertifyPairs> certify_;
     KernelOf<kernels::separate::SeparatePairs> separate_;

@@ -14,12 +14,12 @@
 // States of pairs. `pair`: as in try_all.
 DEVICE uints try_pair(const Candidates* all, uints index, flags apart, float margin, LOCAL LocalPair* pair) {
     flags lacks = NEVER;
-    if (BOUNDARY_NEEDED != 0) {
+    if (BOUNDARY_NEEDED + PRESSURES_NEEDED != 0) {
         uints without = SAME_WORD(0);
-        FOR_PACK(i) AT(without, i) = lacks_boundary(all, (uint)AT(index, i));
+        FOR_PACK(i) AT(without, i) = is_left_out(all, (uint)AT(index, i));
         lacks = without != 0u;
     }
-    uints state = lacks ? SAME_WORD(PAIR_WITHOUT_BOUNDARY) : SAME_WORD(PAIR_REJECTED);
+    uints state = lacks ? SAME_WORD(STATE_LEFT_OUT) : SAME_WORD(PAIR_REJECTED);
     const flags asked = NOT(lacks) & (WANTS_NEAR ? ALWAYS : NOT(apart));
     if (!ANY(asked)) return state;
     uints edge = SAME_WORD(0);
@@ -75,6 +75,44 @@ DEVICE void make_contacts(Features features, const MeetingPair* pair, ContactBat
 }
 #endif
 
+// Whether certify_pairs and separate_pairs have not counted the states of all pairs.
+#define COUNTS_STATES (AT_ONCE || HAS_FIELD)
+
+// Of pairs that may have polygons: a pair with a polygon, without one, or without a certain volume.
+DEVICE uints state_of_polygon(Features features, LOCAL const MeetingPair* meeting) {
+    uints state = meeting->support.near > (real)0 ? SAME_WORD(PAIR_MEETING) : SAME_WORD(PAIR_REJECTED);
+    return features.low == 0u ? SAME_WORD(PAIR_DEGENERATE) : state;
+}
+
+// Pairs of a work-item: their numbers, which elements have one, and whether they are known to be apart.
+typedef struct {
+    uints index;
+    flags present, apart;
+} PairsInHand;
+
+// Prepares the contacts of pairs, and returns their features. Counts the states of pairs that no kernel
+// before has counted.
+DEVICE Features begin_pairs(const Candidates* all, const PairsInHand* hand, GLOBAL const uchar* verdicts,
+                            float margin, LOCAL MeetingPair* meeting, LOCAL uint* group) {
+    Features features = {SAME_WORD(0), SAME_WORD(0)};
+    uints state = hand->present ? SAME_WORD(PAIR_MEETING) : SAME_WORD(PAIR_ABSENT);
+    flags wanted = hand->present;
+    flags apart = hand->apart;
+    if (AT_ONCE) {
+        const uints tried =
+            try_pair(all, hand->index, known_apart(verdicts, hand->index), margin, &meeting->pair);
+        state = hand->present ? tried : state;
+        apart = state == (uint)PAIR_NEAR;
+        wanted &= apart | (state == (uint)PAIR_MEETING);
+    }
+    if (ANY(wanted)) features = prepare_contacts(all, hand->index, apart, margin, meeting);
+    features.low = wanted ? features.low : SAME_WORD(0);
+    features.high = wanted ? features.high : SAME_WORD(0);
+    if (HAS_FIELD) state = wanted ? state_of_polygon(features, meeting) : state;
+    if (COUNTS_STATES) count_state(state, group);
+    return features;
+}
+
 // The pairs of a launch: those that meet, then, from a group's first place on, near ones, because a group's
 // pairs should take the same way.
 typedef struct {
@@ -124,18 +162,8 @@ KERNEL void generate_contacts(GLOBAL const uint* found, uint first, uint pair_ca
             const uints index = AT_ONCE   ? numbers_from((uint)base, present)
                                 : is_near ? entries_of(near, base - range.first_near, present)
                                           : entries_of(meeting, base, present);
-            flags wanted = first_elements(present);
-            flags apart = is_near ? ALWAYS : NEVER;
-            if (AT_ONCE) {
-                const uints state =
-                    try_pair(&all, index, known_apart(verdicts, index), margin, &pairs[LOCAL_ID].pair);
-                count_state(wanted ? state : SAME_WORD(PAIR_ABSENT), group);
-                apart = state == (uint)PAIR_NEAR;
-                wanted &= apart | (state == (uint)PAIR_MEETING);
-            }
-            if (ANY(wanted)) features = prepare_contacts(&all, index, apart, margin, pairs + LOCAL_ID);
-            features.low = wanted ? features.low : SAME_WORD(0);
-            features.high = wanted ? features.high : SAME_WORD(0);
+            const PairsInHand hand = {index, first_elements(present), is_near ? ALWAYS : NEVER};
+            features = begin_pairs(&all, &hand, verdicts, margin, pairs + LOCAL_ID, group);
         }
 #if PACK > 1
         make_contacts(features, pairs, &batch, &sink);
@@ -148,5 +176,5 @@ KERNEL void generate_contacts(GLOBAL const uint* found, uint first, uint pair_ca
     write_batch(&batch, &sink);
 #endif
     BARRIER;
-    if (AT_ONCE) end_group(group, status);
+    if (COUNTS_STATES) end_group(group, status);
 }

@@ -106,7 +106,9 @@ bool loads(ReferencePair<Real>& pair, const Corners<Real>& a, const Corners<Real
         if (!pair.apart) ++counts.degenerate;
         return false;
     }
-    if (pair.apart || settings.decision != DecisionPrecision::fp32 || !pair.separated()) return true;
+    if (pair.apart || settings.decision != DecisionPrecision::fp32 || needs_pressures(settings.rule)
+        || !pair.separated())
+        return true;
     ++counts.rejected;
     pair.apart = true;
     return has_near_pairs(settings.rule);
@@ -174,6 +176,7 @@ std::vector<Contact<Real>> canonical_contacts(ReferencePair<Real>& pair, const G
     const CanonicalPair<Real> sorted(pair, a, b);
     if (!loads(pair, sorted.first.corners, sorted.second.corners, settings, counts)) return {};
     auto contacts = contacts_by_rule(pair, settings.rule, sorted.boundaries);
+    if (needs_pressures(settings.rule) && contacts.empty()) ++counts.rejected;
     for (auto& contact : contacts) {
         contact.feature = given_number(contact.feature, sorted, pair.swapped, settings.rule);
         if (pair.swapped)
@@ -182,6 +185,12 @@ std::vector<Contact<Real>> canonical_contacts(ReferencePair<Real>& pair, const G
     std::sort(contacts.begin(), contacts.end(),
               [](const auto& p, const auto& q) { return p.feature < q.feature; });
     return contacts;
+}
+
+/// Whether some number is between the least and the greatest of both.
+template<class Real>
+bool have_common(const std::array<Real, 4>& p, const std::array<Real, 4>& q) {
+    return std::ranges::max(p) >= std::ranges::min(q) && std::ranges::max(q) >= std::ranges::min(p);
 }
 
 } // namespace
@@ -193,6 +202,10 @@ std::vector<Contact<Real>> reference_contacts(const GivenTetrahedron<Real>& a,
     const unsigned with_faces = (a.boundary != 0 ? 1 : 0) + (b.boundary != 0 ? 1 : 0);
     if (with_faces < boundaries_needed(settings.rule)) {
         ++counts.without_boundary;
+        return {};
+    }
+    if (needs_pressures(settings.rule) && !have_common(a.pressures, b.pressures)) {
+        ++counts.rejected;
         return {};
     }
     ReferencePair<Real> pair;
@@ -211,7 +224,7 @@ std::vector<Contact<Real>> reference_contacts(const GivenTetrahedron<Real>& a,
 template<class Real>
 PolygonCorners<Real> polygon_of_equal_pressure(const GivenTetrahedron<Real>& a,
                                                const GivenTetrahedron<Real>& b) {
-    if (!finite(a.corners) || !finite(b.corners)) return {};
+    if (!finite(a.corners) || !finite(b.corners) || !have_common(a.pressures, b.pressures)) return {};
     ReferencePair<Real> pair;
     const CanonicalPair<Real> sorted(pair, a, b);
     if (!pair.load(sorted.first.corners, sorted.second.corners)) return {};

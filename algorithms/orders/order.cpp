@@ -145,7 +145,7 @@ std::vector<std::uint32_t> hilbert_order(const Mesh& mesh) { return hilbert_orde
 
 std::size_t count_walked(const Mesh& mesh, Walked walked) {
     const auto all = mesh.tetrahedra.size() - mesh.merged.size();
-    if (walked == Walked::all) return all;
+    if (walked != Walked::boundary) return all;
     const auto inner = static_cast<std::size_t>(std::ranges::count(mesh.boundary, std::uint8_t{0}));
     return inner == mesh.tetrahedra.size() ? all : mesh.tetrahedra.size() - inner;
 }
@@ -189,6 +189,7 @@ OrderedMesh ordered(const Mesh& mesh, MeshOrder order) {
 }
 
 Walked walked_of(const Settings& settings) {
+    if (bounds_pressures(settings)) return Walked::by_pressure;
     const bool leaves_out = leaves_out_pairs(settings[parameters::output])
                             && boundaries_needed(settings[parameters::contact_rule]) == 2
                             && !is_published(settings);

@@ -37,11 +37,13 @@ std::vector<Eigen::Vector3d> centroids(const Mesh& mesh);
 /// The tetrahedra of a mesh that a session walks; merged duplicates never.
 enum class Walked {
     all,
-    boundary ///< those with boundary faces; all if none of a mesh has them, since no tree is empty
+    boundary,   ///< those with boundary faces; all if none of a mesh has them, since no tree is empty
+    by_pressure ///< all, but no pairs without a common pressure
 };
 
 /// The tetrahedra that sessions with these settings walk. With output=contacts, a rule whose contacts need
 /// boundary faces of both tetrahedra leaves out the others. residency=published walks everything.
+/// by_pressure: pressure_slab=on.
 Walked walked_of(const Settings& settings);
 
 /// Numbers of the walked tetrahedra, ascending.

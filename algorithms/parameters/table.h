@@ -67,6 +67,13 @@ inline constexpr Setting<double> margin{
     "margin", 1e30, "",
     "distance within which no pair of tetrahedra is missed, in the scene's unit of length (rounding=safe and "
     "directed): bounds grow by half of it in all directions"};
+inline constexpr Setting<bool> pressure_slab{
+    "pressure_slab",
+    false,
+    {{"off", false}, {"on", true}},
+    "PRESSURE_SLAB",
+    "contact_rule=pressure: whether nodes also bound pressures, so that walks leave out pairs of tetrahedra "
+    "without a common pressure, which have no polygon; on host with k=18 only"};
 inline constexpr Setting<Origin> origin{
     "origin",
     Origin::automatic,
@@ -240,7 +247,12 @@ inline bool makes_contacts(const Settings& settings) {
     return has_pairs(settings[parameters::output]) && settings[parameters::contact_rule] != ContactRule::none;
 }
 
-/// Whether these contacts are polygons of equal pressure, so that vertices carry pressures.
+/// Whether nodes bound pressures.
+inline bool bounds_pressures(const Settings& settings) {
+    return settings.has(parameters::pressure_slab) && settings[parameters::pressure_slab];
+}
+
+/// Whether these contacts are polygons of equal pressure.
 inline bool has_polygons(const Settings& settings) {
     return settings.has(parameters::contact_rule) && makes_contacts(settings)
            && needs_pressures(settings[parameters::contact_rule]);

@@ -3,7 +3,8 @@
 // stack. A launch processes the pairs of tiles of one level: those that the level above found, and those with
 // which body pairs start there. It finds the pairs of the next level or, at level 0, candidate pairs.
 // The walk waits for memory, so many groups at once pay; fewer registers than these make it use more memory.
-// Host variants: AXES K PRECISION SLABS=0|1, in lanes; of higher levels: PRECISION=32 SLABS=1
+// Host variants: AXES K PRECISION PRESSURE_SLAB SLABS=0|1, in lanes; of higher levels: PRECISION=32 SLABS=1
+// or K=18 SLABS=1 or PRESSURE_SLAB=1 SLABS=1
 #define BOX_WORDS (K * PRECISION / 32)
 #define WALK_REGISTERS                                                                                       \
     (BOX_WORDS <= 6 ? 40 : BOX_WORDS <= 8 ? 56 : BOX_WORDS <= 12 ? 64 : BOX_WORDS <= 18 ? 72 : 255)

@@ -139,16 +139,18 @@ template<int half, class Pack, std::size_t... I>
                                     + (static_cast<int>(I) < size / 2 ? 0 : size))...);
 }
 
-/// The first three columns of as many rows of four as a pack has elements.
+/// The columns of as many rows of four as a pack has elements.
 template<class Row, class Pack>
-[[gnu::always_inline]] inline void take_rows(const Row* rows, Pack& x, Pack& y, Pack& z) {
+[[gnu::always_inline]] inline void take_rows(const Row* rows, Pack& x, Pack& y, Pack& z, Pack& w) {
     constexpr auto all = std::make_index_sequence<sizeof(Pack) / sizeof(x[0])>();
     Pack part[4];
     __builtin_memcpy(part, rows, sizeof(part));
     const Pack first = two_columns<0>(part[0], part[1], all), second = two_columns<0>(part[2], part[3], all);
     x = halves<0>(first, second, all);
     y = halves<1>(first, second, all);
-    z = halves<0>(two_columns<2>(part[0], part[1], all), two_columns<2>(part[2], part[3], all), all);
+    const Pack third = two_columns<2>(part[0], part[1], all), fourth = two_columns<2>(part[2], part[3], all);
+    z = halves<0>(third, fourth, all);
+    w = halves<1>(third, fourth, all);
 }
 
 template<class Pack>

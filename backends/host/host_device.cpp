@@ -219,7 +219,8 @@ std::pair<std::string, Defines> split(const Defines& defines) {
     std::string fixed;
     Defines rest;
     for (const auto& [name, value] : defines) {
-        if (name == "K" || name == "AXES" || name == "PRECISION" || name == "SLABS")
+        if (name == "K" || name == "AXES" || name == "PRECISION" || name == "PRESSURE_SLAB"
+            || name == "SLABS")
             fixed += fmt::format("{}{}={}", fixed.empty() ? "" : ";", name, value);
         else
             rest[name] = value;

@@ -236,6 +236,31 @@ std::vector<Pair> of_boundary(const Scene& scene, std::vector<Pair> pairs) {
 
 namespace {
 
+/// The pairs of which some pressure is in both tetrahedra.
+std::vector<Pair> of_common_pressure(const Scene& scene, std::vector<Pair> pairs) {
+    const auto interval = [&](std::uint32_t body, std::uint32_t tetrahedron) {
+        const auto& mesh = scene.meshes[scene.bodies[body].mesh];
+        if (mesh.pressures.empty()) return std::pair(-1.0, -1.0);
+        const auto at = [&](std::uint32_t vertex) { return mesh.pressures[vertex]; };
+        const auto [low, high] = std::ranges::minmax(mesh.tetrahedra[tetrahedron], {}, at);
+        return std::pair(at(low), at(high));
+    };
+    std::erase_if(pairs, [&](const Pair& pair) {
+        const auto a = interval(pair.body_a, pair.tet_a), b = interval(pair.body_b, pair.tet_b);
+        return a.first > b.second || b.first > a.second;
+    });
+    return pairs;
+}
+
+} // namespace
+
+std::vector<Pair> pairs_walked(const Scene& scene, std::vector<Pair> pairs, Walked walked) {
+    if (walked == Walked::boundary) return of_boundary(scene, std::move(pairs));
+    return walked == Walked::by_pressure ? of_common_pressure(scene, std::move(pairs)) : std::move(pairs);
+}
+
+namespace {
+
 /// Drops the pairs of all other body pairs, and returns their number. `kept` must be sorted.
 std::uint64_t keep_pairs_of(std::span<const BodyPair> kept, std::vector<Pair>& pairs) {
     return std::erase_if(pairs, [&](const Pair& pair) {

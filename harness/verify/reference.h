@@ -42,6 +42,9 @@ ReferenceAnswer reference(const Scene& scene, const FrameInput& input, const Geo
 /// are of a mesh without any.
 std::vector<Pair> of_boundary(const Scene& scene, std::vector<Pair> pairs);
 
+/// The pairs that walks of these tetrahedra can find, in the same order.
+std::vector<Pair> pairs_walked(const Scene& scene, std::vector<Pair> pairs, Walked walked);
+
 /// Brute force for small scenes, sweep otherwise.
 Method reference_method(const Scene& scene);
 

@@ -150,6 +150,14 @@ std::vector<Real> swings_of(const Scene& scene, const FrameInput& input, Origin 
     return swings;
 }
 
+/// The pressures of a mesh's vertices as devices have them; -1 without a field.
+template<class Real>
+std::vector<Real> pressures_of(const Mesh& mesh) {
+    std::vector<Real> result(mesh.vertices.size(), Real(-1));
+    std::ranges::transform(mesh.pressures, result.begin(), [](double p) { return static_cast<Real>(p); });
+    return result;
+}
+
 /// Slabs of all tetrahedra of one body, each computed separately from its own vertices. `swings`: of the
 /// vertices on the path to the next frame; empty: 0. With a margin, each vertex stands for a ball, whose
 /// radius is an input here, as drift is.
@@ -158,34 +166,38 @@ Bounds<Real> bounds_of(const Scene& scene, const Frame& frame, const Geometry& g
                        std::span<const Real> swings) {
     const auto axes = directions(geometry);
     Bounds<Real> bounds;
-    bounds.axes = axes.size();
+    bounds.axes = axes.size() + (geometry.pressure_slab ? 1 : 0); // the last one of pressures
     bounds.published = geometry.rounding == Rounding::published;
     const bool drifts = geometry.placement == Placement::exact;
     const auto drift = drifts ? drift_in<Real>(scene, frame, geometry, body) : std::array<Real, 3>{};
     const auto margin = static_cast<Real>(reach_of_margin(geometry));
     bounds.vertices = world_vertices<Real>(scene, frame, body, geometry.origin);
     const auto& tetrahedra = scene.meshes[scene.bodies[body].mesh].tetrahedra;
-    bounds.slabs.resize(tetrahedra.size() * 2 * axes.size());
-    bounds.whole.assign(axes.size(), std::numeric_limits<Real>::infinity());
-    bounds.whole.insert(bounds.whole.end(), axes.size(), -std::numeric_limits<Real>::infinity());
+    bounds.slabs.resize(tetrahedra.size() * 2 * bounds.axes);
+    bounds.whole.assign(bounds.axes, std::numeric_limits<Real>::infinity());
+    bounds.whole.insert(bounds.whole.end(), bounds.axes, -std::numeric_limits<Real>::infinity());
     std::vector<bool> skipped(tetrahedra.size());
     for (const auto t : skipped_in(scene, frame, body)) skipped[t] = true;
-    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+    const auto pressures = pressures_of<Real>(scene.meshes[scene.bodies[body].mesh]);
+    const auto span_of = [&](std::size_t vertex, std::size_t axis) {
+        if (axis == axes.size()) return std::pair(pressures[vertex], pressures[vertex]);
+        return project(bounds.vertices[vertex], axes[axis], geometry.rounding, drifts ? &drift : nullptr,
+                       swings.empty() ? margin : swings[vertex] + margin);
+    };
+    for (std::size_t axis = 0; axis < bounds.axes; ++axis) {
         for (std::size_t t = 0; t < tetrahedra.size(); ++t) {
             Real lower = std::numeric_limits<Real>::infinity();
             Real upper = -lower;
             for (const auto vertex : tetrahedra[t]) {
                 if (skipped[t]) break; // an empty slab overlaps nothing
-                const auto [low, high] =
-                    project(bounds.vertices[vertex], axes[axis], geometry.rounding, drifts ? &drift : nullptr,
-                            swings.empty() ? margin : swings[vertex] + margin);
+                const auto [low, high] = span_of(vertex, axis);
                 lower = std::min(lower, low);
                 upper = std::max(upper, high);
             }
-            bounds.slabs[t * 2 * axes.size() + axis] = lower;
-            bounds.slabs[t * 2 * axes.size() + axes.size() + axis] = upper;
+            bounds.slabs[t * 2 * bounds.axes + axis] = lower;
+            bounds.slabs[t * 2 * bounds.axes + bounds.axes + axis] = upper;
             bounds.whole[axis] = std::min(bounds.whole[axis], lower);
-            bounds.whole[axes.size() + axis] = std::max(bounds.whole[axes.size() + axis], upper);
+            bounds.whole[bounds.axes + axis] = std::max(bounds.whole[bounds.axes + axis], upper);
         }
     }
     return bounds;

@@ -29,11 +29,12 @@ std::string References::cache_key(const Key& key) const {
     const auto& [geometry, contacts, index] = key;
     const bool moves = geometry.motion == Motion::linear;
     return fmt::format(
-        "frame {:016x}{}, k {} {}, precision {}, rounding {}, placement {}, origin {}{}, rule {}, "
+        "frame {:016x}{}, k {} {}{}, precision {}, rounding {}, placement {}, origin {}{}, rule {}, "
         "decision {}, walked {}{}{}{}",
         digest_of(*range_.frame(index)),
         moves ? fmt::format(" to {:016x}", digest_of(*range_.frame(index + 1))) : "", geometry.k,
-        geometry.coordinate_axes, static_cast<int>(geometry.precision), static_cast<int>(geometry.rounding),
+        geometry.coordinate_axes, geometry.pressure_slab ? " with pressures" : "",
+        static_cast<int>(geometry.precision), static_cast<int>(geometry.rounding),
         static_cast<int>(geometry.placement), static_cast<int>(geometry.origin),
         geometry.margin > 0 ? fmt::format(", margin {}", geometry.margin) : "",
         static_cast<int>(contacts.rule), static_cast<int>(contacts.decision),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // One binary tree per body with stored children, and the simplest traversal: every tetrahedron of body a
 // queries body b's tree.
-// Host variants: AXES K PRECISION
+// Host variants: AXES K PRECISION PRESSURE_SLAB
 #include "backends/portable.h"
 #include "algorithms/answer/emit.clh"
 #include "algorithms/bodies/leaf.clh"

@@ -33,6 +33,7 @@ protected:
         EXPECT_EQ(result.contact_digest(), right.contact_digest);
         EXPECT_EQ(result.contacts, right.contacts);
         EXPECT_EQ(result.degenerate, right.degenerate);
+        EXPECT_EQ(result.rejected, right.rejected);
         return right;
     }
 
@@ -50,6 +51,36 @@ TEST_P(PressuresOf, EveryAlgorithmHasThePolygonsOfTheReference) {
     for (const auto* traversal : walks())
         for (const auto& cell : cells)
             EXPECT_GT(expect_right(*traversal, scene_, of_pressure(cell)).contacts, 500u);
+}
+
+/// Nodes that bound pressures leave out candidate pairs, and no polygon. k = 18, for which every device has
+/// such nodes.
+TEST_P(PressuresOf, SlabsOfPressuresLeaveOutNoPolygon) {
+    std::vector<SettingTexts> cells{{},
+                                    {{"order", "canonical"}, {"broad", "device"}, {"pair_capacity", "1"}}};
+    if (walks().size() > 2) {
+        cells.push_back({{"precision", "double"}, {"decision", "exact"}});
+        cells.push_back({{"placement", "exact"}, {"pair_layout", "items"}, {"output", "contacts"}});
+    }
+    for (const auto* traversal : walks())
+        for (auto cell : cells) {
+            const auto whole = expect_right(*traversal, scene_, of_pressure(cell));
+            cell["pressure_slab"] = "on";
+            const auto part = expect_right(*traversal, scene_, of_pressure(cell));
+            EXPECT_EQ(part.contacts, whole.contacts);
+            EXPECT_EQ(part.contact_digest, whole.contact_digest);
+            EXPECT_LT(part.digest.count, whole.digest.count);
+            EXPECT_EQ(whole.rejected - part.rejected, whole.digest.count - part.digest.count);
+        }
+}
+
+TEST_P(PressuresOf, SlabsOfPressuresAreOfEveryKind) {
+    const auto& tiled = algorithm("tiled");
+    for (const std::string slabs : {"three", "all", "touched"})
+        for (const std::string k : {"6", "8", "12", "18", "26"}) {
+            if (on.info().max_group_size == 1 && k != "18") continue;
+            expect_right(tiled, scene_, of_pressure({{"pressure_slab", "on"}, {"slabs", slabs}, {"k", k}}));
+        }
 }
 
 TEST_P(PressuresOf, DecisionsDoNotChangePolygons) {
@@ -146,6 +177,10 @@ TEST_P(PressuresOf, ImpossibleSettingsAreRefused) {
     const auto refusal = [&](const Scene& scene, SettingTexts given) {
         return message_of([&] { prepare(chunked, scene, of_pressure(std::move(given))); });
     };
+    EXPECT_THAT(refusal(scene_, {{"contact_rule", "sat"}, {"pressure_slab", "on"}}),
+                HasSubstr("pressure_slab=on does not go with contact_rule=sat"));
+    if (on.info().max_group_size == 1)
+        EXPECT_THAT(refusal(scene_, {{"k", "6"}, {"pressure_slab", "on"}}), HasSubstr("goes with k=18"));
     EXPECT_THAT(refusal(scene_, {{"self", "on"}}),
                 HasSubstr("self=on does not go with contact_rule=pressure"));
     EXPECT_THAT(refusal(scene_, {{"motion", "linear"}, {"decision", "exact"}}),

@@ -165,7 +165,6 @@ PressurePolygon<Real> pressure_polygon(const ReferencePair<Real>& pair) {
         for (Real& value : four) value *= scale;
     const Real low = std::max(std::ranges::min(pressures[0]), std::ranges::min(pressures[1]));
     const Real high = std::min(std::ranges::max(pressures[0]), std::ranges::max(pressures[1]));
-    if (low > high) return {};
     const LinearField a(pair, 0, pressures[0]), b(pair, 1, pressures[1]);
     const auto difference = a.gradient - b.gradient;
     if (tandem::narrow_phase::largest(difference) <= a.error + b.error) return {};

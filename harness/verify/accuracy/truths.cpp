@@ -71,8 +71,7 @@ PairErrors Truths::motion_errors(const FramePosition& position, const FrameAnswe
                                  std::vector<Pair> pairs, const Report& report) {
     const auto& motion = motion_truth_of(position, report);
     FrameTruth truth;
-    truth.overlapping =
-        answer.walked == Walked::boundary ? of_boundary(scene_, motion.colliding) : motion.colliding;
+    truth.overlapping = pairs_walked(scene_, motion.colliding, answer.walked);
     truth.invalid = motion.invalid;
     std::erase_if(pairs,
                   [&](const Pair& pair) { return std::ranges::binary_search(motion.undecided, pair); });
@@ -83,12 +82,12 @@ const FrameTruth& Truths::walked_truth_of(const FramePosition& position, Walked 
                                           const Report& report) {
     const auto& whole = truth_of(position, report);
     if (walked == Walked::all) return whole;
-    if (const auto found = boundary_truths_.find(position); found != boundary_truths_.end())
-        return found->second;
+    const std::pair key{position, walked};
+    if (const auto found = part_truths_.find(key); found != part_truths_.end()) return found->second;
     auto part = whole;
-    part.touching = of_boundary(scene_, std::move(part.touching));
-    part.overlapping = of_boundary(scene_, std::move(part.overlapping));
-    return boundary_truths_.emplace(position, std::move(part)).first->second;
+    part.touching = pairs_walked(scene_, std::move(part.touching), walked);
+    part.overlapping = pairs_walked(scene_, std::move(part.overlapping), walked);
+    return part_truths_.emplace(key, std::move(part)).first->second;
 }
 
 RoundedFrame Truths::rounded_frame(const FramePosition& cell) const {

@@ -83,9 +83,9 @@ private:
     std::size_t most_contacts_;
     VerificationCache cache_;
     std::map<FramePosition, FrameTruth> truths_;
-    std::map<FramePosition, MotionTruth> motion_truths_;  ///< from each frame to the next
-    std::map<FramePosition, FrameTruth> boundary_truths_; ///< of Walked::boundary
-    std::map<FramePosition, bool> rounds_;                ///< by cell: some vertex is not the input's
+    std::map<FramePosition, MotionTruth> motion_truths_;                 ///< from each frame to the next
+    std::map<std::pair<FramePosition, Walked>, FrameTruth> part_truths_; ///< not of Walked::all
+    std::map<FramePosition, bool> rounds_; ///< by cell: some vertex is not the input's
     std::map<std::tuple<FramePosition, FramePosition, Walked>, RoundingErrors> roundings_;
     std::map<std::pair<FramePosition, Walked>, ContactTruths> contact_truths_;
     std::map<std::pair<Precision, Origin>, Drift> drifts_; ///< of the first frame

@@ -105,6 +105,7 @@ public:
         auto defines = this->defines();
         margin_ = margin_of(settings);
         defines["BOUNDARY_NEEDED"] = std::to_string(boundaries_needed(settings.rule));
+        defines["PRESSURES_NEEDED"] = needs_pressures(settings.rule) ? "1" : "0";
         ContactOutcome<Real> outcome{std::vector<std::uint32_t>(STATUS_WORDS),
                                      std::vector<PairFeature>(capacity + 8, {~0u, ~0u}),
                                      std::vector<Real>(8 * (capacity + 8), Real(-7))};
