@@ -73,7 +73,8 @@ const std::vector<std::string> small_scenes = {"glasses:bodies=60,size=3",
                                                "sheet:count=3,width=2",
                                                "column:count=3,folds=2",
                                                "spheres:overlap=0",
-                                               "spheres:overlap=1"};
+                                               "spheres:overlap=1",
+                                               "grippers:worlds=1"};
 
 TEST(ScenesStarts, NothingOverlaps) {
     for (const auto& name : small_scenes) {
