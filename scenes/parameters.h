@@ -36,7 +36,9 @@ std::string key_of(std::string_view name, std::span<const SceneParameter> parame
     KIND(block) \
     KIND(rod) \
     KIND(sheet) \
-    KIND(column)
+    KIND(column) \
+    KIND(spheres) \
+    KIND(grippers)
 // clang-format on
 #define TANDEM_DECLARE_KIND(name) SceneKind name##_kind();
 TANDEM_SCENE_KINDS(TANDEM_DECLARE_KIND)

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "scenes/cubes.h"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -98,8 +99,7 @@ Mesh hexahedron(const std::array<Eigen::Vector3d, 8>& corners) {
     mesh.vertices.assign(corners.begin(), corners.end());
     for (auto& v : mesh.vertices)
         for (auto& x : v) x = on_grid(x);
-    // The six paths from corner 0 to corner 7. The odd ones have their middle corners swapped.
-    mesh.tetrahedra = {{0, 1, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 3, 2, 7}, {0, 6, 4, 7}, {0, 5, 1, 7}};
+    mesh.tetrahedra.assign(tetrahedra_of_cube.begin(), tetrahedra_of_cube.end());
     return completed(std::move(mesh), "stone");
 }
 

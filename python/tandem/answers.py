@@ -232,7 +232,8 @@ class Queued:
     @property
     def contact_ids(self) -> Any:
         """(capacity, 2) int32, of which counts[0, 2] rows are used: the row of the contact's pair in `pairs`,
-        and its feature. No rows without contacts."""
+        and its feature; with output="wrenches" the row of one pair of the two bodies, and the number of their polygons.
+        No rows without contacts."""
         return self._core.contact_ids
 
     @property

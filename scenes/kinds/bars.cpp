@@ -7,7 +7,6 @@
 #include "scenes/refine.h"
 
 #include <algorithm>
-#include <fmt/format.h>
 
 namespace tandem {
 
@@ -15,17 +14,6 @@ namespace {
 
 constexpr std::size_t rise = 100; ///< steps of 0.01 s from rest to the tightest frame
 constexpr int parts = 8;          ///< chords between two sections of a line
-
-/// The six paths from a cube's corner 0 to 7 as corners, whose bits are x, y and z. The odd ones have their
-/// middle corners swapped. Opposite faces have the same diagonal, so that rows of cubes conform.
-constexpr std::array<std::array<unsigned, 4>, 6> paths = {
-    {{0, 1, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 3, 2, 7}, {0, 6, 4, 7}, {0, 5, 1, 7}}};
-
-void refuse_large(const std::string& name, const std::array<std::uint64_t, 3>& cubes) {
-    const auto count = static_cast<double>(cubes[0] * cubes[1] * cubes[2]);
-    refuse_beyond_memory(fmt::format("the tetrahedra of mesh {}", name),
-                         count * (6 * sizeof(Tetrahedron) + sizeof(Eigen::Vector3d)));
-}
 
 /// World vertices of a bar. Section i is that of the vertices with x = i * spacing.
 std::vector<Eigen::Vector3d> bent(const std::vector<Eigen::Vector3d>& bar,
@@ -50,30 +38,11 @@ double amount_at(std::size_t step) {
 
 } // namespace
 
-Mesh bar(const std::string& name, const std::array<std::uint64_t, 3>& cubes) {
-    refuse_large(name, cubes);
-    Mesh mesh;
-    mesh.name = name;
-    const auto [length, height, width] = cubes;
-    for (std::uint64_t z = 0; z <= width; ++z)
-        for (std::uint64_t y = 0; y <= height; ++y)
-            for (std::uint64_t x = 0; x <= length; ++x)
-                mesh.vertices.emplace_back(
-                    bar_edge * static_cast<double>(x),
-                    bar_edge * (static_cast<double>(y) - 0.5 * static_cast<double>(height)),
-                    bar_edge * (static_cast<double>(z) - 0.5 * static_cast<double>(width)));
-    const std::array<std::uint64_t, 3> next{1, length + 1, (length + 1) * (height + 1)};
-    for (std::uint64_t cube = 0; cube < length * height * width; ++cube) {
-        const auto first =
-            cube % length + cube / length % height * next[1] + cube / (length * height) * next[2];
-        for (const auto& path : paths) {
-            auto& tetrahedron = mesh.tetrahedra.emplace_back();
-            for (std::size_t i = 0; i < 4; ++i)
-                tetrahedron[i] =
-                    static_cast<std::uint32_t>(first + (path[i] & 1) * next[0] + (path[i] >> 1 & 1) * next[1]
-                                               + (path[i] >> 2) * next[2]);
-        }
-    }
+Mesh bar(const std::string& name, const CubeCounts& counts) {
+    auto mesh = cubes(name, counts);
+    const double height = 0.5 * static_cast<double>(counts[1]), width = 0.5 * static_cast<double>(counts[2]);
+    for (auto& v : mesh.vertices)
+        v = {bar_edge * v.x(), bar_edge * (v.y() - height), bar_edge * (v.z() - width)};
     complete_mesh(mesh, name);
     return mesh;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "scenes/cubes.h"
 #include "scenes/scene.h"
 
 namespace tandem {
@@ -10,7 +11,7 @@ constexpr double bar_edge = 0.25;
 
 /// Mesh of cubes with edges of bar_edge, six tetrahedra each. A bar begins at x = 0 and is centred in y and
 /// z. No tetrahedron is inverted. Throws InputError when it exceeds memory.
-Mesh bar(const std::string& name, const std::array<std::uint64_t, 3>& cubes);
+Mesh bar(const std::string& name, const CubeCounts& counts);
 
 /// Where a bar's cross-section is: world coordinates of its centre, and the directions of its y and z.
 struct Section {

@@ -19,6 +19,7 @@ PAIRS = {
 IDENTITY = (1.0, 0.0, 0.0, 0.0)
 # Of Drake's geometry/benchmarking/compliant_mesh_intersection_benchmark.cc: radii, and translations along each
 # axis. Its resolution hints 4, 3, 2, 1 are about these numbers of cells along a diameter of our meshes.
+# The built-in scene spheres has the same bodies.
 RADII = (3.01, 3.5, 4.0), (3.0, 3.0, 3.0)
 CELLS = (2, 3, 4, 8)
 TRANSLATIONS = (7.0, 4.0, 3.5, 1.2)

@@ -48,6 +48,13 @@ class Example(ColliderCase):
             self.assertRegex(text, r"\d{2,} candidate pairs and \d{2,} contacts in 20 worlds of 4 boxes")
             self.assertRegex(text, rf"ms per call, [\d.]+ us per world, on {device}")
 
+    def test_worlds_of_grippers(self):
+        """With PyTorch's tensors where it is installed."""
+        text = self.example(20, "host", script="grippers.py")
+        self.assertIn("step 1: 0 of 40 fingers touch, no force", text)
+        self.assertRegex(text, r"step 10: 40 of 40 fingers touch, mean force [1-9][\d.]*, [\d.]+ ms")
+        self.assertTrue(self.example(0, code=1, script="grippers.py").startswith("grippers.py: "))
+
     def test_the_cost_of_a_call_is_printed(self):
         text = self.example(
             "plates:count=2", "--frames", "60:61", "--rounds", 1, "--arrays", "all", script="call_cost.py"

@@ -69,6 +69,16 @@ class Pressures(Case):
         other = self.run_of(f"run {PILE} --pressure 2e7")[0]
         self.assertNotEqual(other["key"], self.run_of(f"run {PILE} --pressure 1e7")[0]["key"])
 
+    def test_scenes_with_fields_of_their_own(self):
+        spheres = "run spheres:hint=2 --frames 0 --repeat 1"
+        right = self.polygons(spheres)
+        self.assertGreater(right[0][0], 100)
+        self.assertEqual(self.polygons(spheres, "--pressure 3"), right, "the scene's field is kept")
+        sums, errors = self.run_of(
+            "run grippers:worlds=3 --frames 10 --repeat 1 --set output=wrenches --truth none"
+        )
+        self.assertEqual((sums["work"]["contacts"], errors), ([6], []))
+
     def test_what_is_told(self):
         message = "tandem: scene meshes: 1 of 2 bodies have no pressure field and make no polygons (--pressure MODULUS gives them one)"
         told = self.run_of(self.beside(self.own, self.plain))

@@ -71,7 +71,10 @@ const std::vector<std::string> small_scenes = {"glasses:bodies=60,size=3",
                                                "block:bodies=4,size=0.3,drop=1",
                                                "rod:count=3,length=20",
                                                "sheet:count=3,width=2",
-                                               "column:count=3,folds=2"};
+                                               "column:count=3,folds=2",
+                                               "spheres:overlap=0",
+                                               "spheres:overlap=1",
+                                               "grippers:worlds=1"};
 
 TEST(ScenesStarts, NothingOverlaps) {
     for (const auto& name : small_scenes) {
