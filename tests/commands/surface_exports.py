@@ -146,6 +146,11 @@ class SurfaceExports(Case):
                 self.assertLessEqual(abs(part - other), 1)
             self.assertEqual(len(base64.b64decode(surfaces["points"])), 3 * len(pressures))
 
+    def test_pages(self):
+        page = self.work / "page.html"
+        self.output(f"view {SCENE} --surfaces --frames 0 -o {page}")
+        self.assertIn('"most_pressure":', page.read_text())
+
     def test_what_is_refused(self):
         glb = self.work / "refused.glb"
         for message, arguments in (
@@ -158,4 +163,6 @@ class SurfaceExports(Case):
             ("--device all: contacts need one device", f"--surfaces --device all --pressure 1 --glb {glb}"),
         ):
             self.bad(message, f"export pile:bodies=2,refine=1,frames=1 {arguments}")
+        self.bad("needs a pressure field", f"view pile:bodies=2,frames=1 --surfaces -o {self.work}/x.html")
+        self.bad("--device requires --contacts or --surfaces", "view plates --device host")
         self.assertFalse(glb.exists())
