@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "harness/commands/dumps.h"
 
-#include "algorithms/bodies/origin.h"
 #include "harness/plans/cell_session.h"
 #include "harness/plans/rank_team.h"
 #include "harness/profile/timeline/trace_frame.h"
@@ -38,13 +37,9 @@ void Dumps::dump(const Cell& cell, const Task& task) {
             if (const auto found = result.download_contacts(); rows)
                 rows.rows(task.range.first() + i, found, columns);
         if (!task.options.dump_surfaces.empty())
-            if (const auto found = result.download_contacts(); surfaces_) {
-                const auto& [x, y, z] = result.origin;
-                const auto world = oracle::world_of(task.scene, counted_from({x, y, z}, *task.range.frame(i)),
-                                                    geometry.precision, geometry.origin);
+            if (const auto found = result.download_contacts(); surfaces_)
                 surfaces.add(static_cast<std::uint32_t>(task.range.first() + i), found,
-                             surfaces_of(task.scene, world, geometry.precision, result.origin, found));
-            }
+                             surfaces_of(task.scene, *task.range.frame(i), geometry, result.origin, found));
     }
     if (surfaces_) {
         surfaces_.write(surfaces_vtp(surfaces));

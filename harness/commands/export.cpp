@@ -15,6 +15,7 @@
 #include "scenes/export/geometry.h"
 #include "scenes/export/glb.h"
 #include "scenes/export/vtk.h"
+#include "scenes/export/world.h"
 #include "scenes/pressure_field.h"
 
 #include <cstdlib>
@@ -56,32 +57,60 @@ void make_folder(const std::string& folder) {
 
 std::string bodies_file(std::size_t frame) { return fmt::format("bodies_{:06}.vtu", frame); }
 std::string contacts_file(std::size_t frame) { return fmt::format("contacts_{:06}.vtp", frame); }
+std::string surfaces_file(std::size_t frame) { return fmt::format("surfaces_{:06}.vtp", frame); }
 
-std::size_t export_vtu(const ExportOptions& options, const Scene& scene,
-                       std::span<const std::size_t> frames) {
-    std::optional<FrameContacts> finder;
-    if (options.contacts) finder.emplace(options.device, scene);
+/// Makes what frames have on the device beside bodies.
+struct Finders {
+    Finders(const ExportOptions& options, const Scene& scene) {
+        const std::string device = options.device.empty() ? "host" : options.device;
+        if (options.contacts) contacts.emplace(device, scene);
+        if (options.surfaces) surfaces.emplace(device, scene, "pressure");
+    }
+
+    FindSurfaces find_surfaces() {
+        if (!surfaces) return {};
+        return [this](std::size_t number, const Frame& frame) { return surfaces->surfaces(number, frame); };
+    }
+
+    std::optional<FrameContacts> contacts, surfaces;
+};
+
+/// Numbers of contacts and of polygons.
+struct Exported {
+    std::size_t contacts = 0, polygons = 0;
+};
+
+Exported export_vtu(const ExportOptions& options, const Scene& scene, std::span<const std::size_t> frames,
+                    Finders& finders) {
     if (const auto without = bodies_without_field(scene); without > 0 && without < scene.bodies.size())
         print_message("tandem: scene {}: {} of {} bodies have no pressure field, so that --vtu writes none\n",
                       scene.name, without, scene.bodies.size());
     make_folder(options.vtu);
     const auto chunks = chunks_of(scene);
-    std::vector<TimedFile> bodies, contacts;
-    std::size_t found = 0;
+    std::vector<TimedFile> bodies, contacts, surfaces;
+    Exported found;
     for (const auto i : frames) {
         MemoryReserve::refill();
         const auto frame = scene.frame(i);
         const double time = scene.time ? scene.time(i) : static_cast<double>(i);
         bodies.push_back({time, bodies_file(i)});
         write_vtu(options.vtu + "/" + bodies.back().file, scene, frame, {&chunks, 1});
-        if (!finder) continue;
-        const auto points = finder->find(frame);
-        found += points.size();
-        contacts.push_back({time, contacts_file(i)});
-        write_contacts_vtp(options.vtu + "/" + contacts.back().file, points);
+        if (finders.contacts) {
+            const auto points = finders.contacts->find(frame);
+            found.contacts += points.size();
+            contacts.push_back({time, contacts_file(i)});
+            write_contacts_vtp(options.vtu + "/" + contacts.back().file, points);
+        }
+        if (finders.surfaces) {
+            const auto polygons = finders.surfaces->surfaces(i, frame);
+            found.polygons += polygons.rows.size();
+            surfaces.push_back({time, surfaces_file(i)});
+            exporting::write_file(options.vtu + "/" + surfaces.back().file, surfaces_vtp(polygons));
+        }
     }
     write_pvd(options.vtu + "/bodies.pvd", bodies);
-    if (finder) write_pvd(options.vtu + "/contacts.pvd", contacts);
+    if (finders.contacts) write_pvd(options.vtu + "/contacts.pvd", contacts);
+    if (finders.surfaces) write_pvd(options.vtu + "/surfaces.pvd", surfaces);
     return found;
 }
 
@@ -93,20 +122,19 @@ void check_outputs(const ExportOptions& options, std::span<const std::size_t> fr
     if (const char* page = std::getenv("TANDEM_PAGE"); page != nullptr && !options.geometry.empty())
         check_output(page);
     if (!std::filesystem::is_directory(options.vtu)) return; // export_vtu() makes the folder
-    for (const auto* name : {"bodies.pvd", "contacts.pvd"}) check_output(options.vtu + "/" + name);
+    for (const auto* name : {"bodies.pvd", "contacts.pvd", "surfaces.pvd"})
+        check_output(options.vtu + "/" + name);
     for (const auto i : frames) {
         check_output(options.vtu + "/" + bodies_file(i));
         if (options.contacts) check_output(options.vtu + "/" + contacts_file(i));
+        if (options.surfaces) check_output(options.vtu + "/" + surfaces_file(i));
     }
 }
 
-void export_geometry(const ExportOptions& options, const Scene& scene, std::span<const std::size_t> frames) {
-    std::optional<FrameContacts> finder;
-    GeometryParts parts{.chunks = chunk_numbers};
-    if (options.contacts) {
-        finder.emplace(options.device, scene);
-        parts.contacts = [&](const Frame& frame) { return finder->find(frame); };
-    }
+void export_geometry(const ExportOptions& options, const Scene& scene, std::span<const std::size_t> frames,
+                     Finders& finders) {
+    GeometryParts parts{.chunks = chunk_numbers, .surfaces = finders.find_surfaces()};
+    if (finders.contacts) parts.contacts = [&](const Frame& frame) { return finders.contacts->find(frame); };
     write_geometry(options.geometry, scene, frames, parts);
 }
 
@@ -140,6 +168,16 @@ int export_csv(const ExportOptions& options) {
     return run_external("export-csv", words);
 }
 
+/// Refuses contacts and surfaces without a file for them, and a device that finds neither.
+void check_finders(const ExportOptions& options, bool exports_frames) {
+    if (options.contacts && options.vtu.empty() && options.geometry.empty())
+        throw InputError("--contacts requires --vtu FOLDER or --geometry FILE; a .glb file has no points");
+    if (options.surfaces && !exports_frames)
+        throw InputError("--surfaces requires --vtu FOLDER, --glb FILE or --geometry FILE; chunks have none");
+    if (!options.device.empty() && !options.contacts && !options.surfaces)
+        throw InputError("--device requires --contacts or --surfaces; the device finds them");
+}
+
 /// Refuses options that name no output, or the same file twice.
 void check_outputs(const ExportOptions& options) {
     const bool exports_frames = !options.vtu.empty() || !options.glb.empty() || !options.geometry.empty();
@@ -149,9 +187,7 @@ void check_outputs(const ExportOptions& options) {
     if (!exports_frames && (!options.frames.empty() || options.every != 1))
         throw InputError("--frames and --every require --vtu FOLDER, --glb FILE or --geometry FILE; chunks "
                          "are the same in every frame");
-    if (options.contacts && options.vtu.empty() && options.geometry.empty())
-        throw InputError(
-            "--contacts requires --vtu FOLDER or --geometry FILE; a .glb file has surfaces only");
+    check_finders(options, exports_frames);
     const std::pair<const char*, std::string> files[] = {
         {"--chunks", options.chunks}, {"--glb", options.glb}, {"--geometry", options.geometry}};
     for (const auto& one : files)
@@ -172,20 +208,23 @@ int export_command(const ExportOptions& options) {
     std::vector<std::size_t> frames;
     for (auto i = first; i <= last; i += options.every) frames.push_back(i);
     check_outputs(options, frames);
+    Finders finders(options, scene);
     if (!options.chunks.empty()) export_chunks(options, scene);
     const auto summary = fmt::format("{} of frames {}:{} of {}", frames.size(), first, last, scene.key);
     if (!options.glb.empty()) {
-        write_glb(options.glb, scene, frames);
-        put("{}: {}\n", options.glb, summary);
+        const auto polygons = write_glb(options.glb, scene, frames, finders.find_surfaces());
+        const auto also = options.surfaces ? fmt::format(", {} polygons", polygons) : std::string();
+        put("{}: {}{}\n", options.glb, summary, also);
     }
     if (!options.geometry.empty()) {
-        export_geometry(options, scene, frames);
+        export_geometry(options, scene, frames, finders);
         put("{}: {}\n", options.geometry, summary);
     }
     if (options.vtu.empty()) return 0;
-    const auto found = export_vtu(options, scene, frames);
+    const auto [contacts, polygons] = export_vtu(options, scene, frames, finders);
     put("{}/bodies.pvd: {}\n", options.vtu, summary);
-    if (options.contacts) put("{}/contacts.pvd: {} contacts\n", options.vtu, found);
+    if (options.contacts) put("{}/contacts.pvd: {} contacts\n", options.vtu, contacts);
+    if (options.surfaces) put("{}/surfaces.pvd: {} polygons\n", options.vtu, polygons);
     return 0;
 }
 

@@ -24,7 +24,8 @@ struct ExportOptions {
     std::uint64_t chunk_bytes = 8000;       ///< size of the chunks by the paper's equations 1 to 3, with `k`
     std::string k = "8";                    ///< as the setting
     bool contacts = false;                  ///< also export the contacts, found on `device`
-    std::string device = "host";
+    bool surfaces = false;                  ///< also export the contact surfaces, found on `device`
+    std::string device;                     ///< empty: host
 };
 
 /// Returns the exit code: 0 ok, 1 a check failed, 3 a device failed. Bad use throws InputError.

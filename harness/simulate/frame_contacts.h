@@ -2,6 +2,7 @@
 #pragma once
 
 #include "harness/plans/inputs.h"
+#include "scenes/export/surfaces.h"
 
 #include <memory>
 #include <string>
@@ -9,17 +10,24 @@
 
 namespace tandem {
 
-/// Finds the contacts of frames on one device, with the first algorithm and its default settings.
+/// Finds the contacts of frames on one device, with the first algorithm and its default settings but the
+/// contact rule.
 class FrameContacts {
 public:
-    /// The scene must outlive this object. Throws InputError.
-    FrameContacts(const std::string& device, const Scene& scene);
+    /// The scene must outlive this object. `rule`: as setting contact_rule; empty: the default. Throws
+    /// InputError.
+    FrameContacts(const std::string& device, const Scene& scene, const std::string& rule = {});
 
     /// Checks the coordinates of this frame, because an export opens only one frame at a time. Throws
     /// InputError.
     std::vector<ContactPoint> find(const Frame& frame);
 
+    /// Of rule pressure: the rows of a frame with the corners of their polygons.
+    SurfaceFrames surfaces(std::size_t number, const Frame& frame);
+
 private:
+    FrameResult run(const Frame& frame);
+
     const Scene& scene_;
     std::vector<BackendReport> backends_;
     Cell cell_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/verify/contact_surfaces.h"
 
+#include "algorithms/bodies/origin.h"
 #include "algorithms/narrow_phase/reference.h"
 #include "base/parallel.h"
 
@@ -50,6 +51,13 @@ ContactSurfaces surfaces_of(const Scene& scene, const oracle::World& world, Prec
                             const std::array<double, 3>& origin, std::span<const ContactPoint> rows) {
     return precision == Precision::fp64 ? surfaces_in<double>(scene, world, origin, rows)
                                         : surfaces_in<float>(scene, world, origin, rows);
+}
+
+ContactSurfaces surfaces_of(const Scene& scene, const Frame& frame, const Geometry& geometry,
+                            const std::array<double, 3>& origin, std::span<const ContactPoint> rows) {
+    const auto counted = counted_from({origin[0], origin[1], origin[2]}, frame);
+    const auto world = oracle::world_of(scene, counted, geometry.precision, geometry.origin);
+    return surfaces_of(scene, world, geometry.precision, origin, rows);
 }
 
 } // namespace tandem

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/export/geometry.h"
 
-#include "scenes/export/quantised.h"
+#include "scenes/export/colour_scale.h"
+#include "scenes/export/geometry_surfaces.h"
 #include "scenes/export/world.h"
-#include "base/base64.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
+#include <set>
 
 namespace tandem {
 
@@ -16,33 +16,8 @@ namespace exporting {
 
 namespace {
 
-using OrderedJson = nlohmann::ordered_json;
-using Points = std::vector<Eigen::Vector3d>;
-
-template<class Number>
-std::string base64_of(const std::vector<Number>& numbers) {
-    const auto bytes = std::as_bytes(std::span(numbers));
-    return base64::encode({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-}
-
 /// Rounds to six digits, which is enough for a screen.
 double six_digits(double value) { return std::stod(fmt::format("{:.6g}", value)); }
-
-OrderedJson json_of(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-
-/// Points quantised in a box, with the box.
-OrderedJson points_json(const Points& points, const Quantised& box) {
-    std::vector<std::uint16_t> coordinates;
-    for (const auto& point : points) box.add(point, coordinates);
-    return {
-        {"lower", json_of(box.lower())}, {"size", json_of(box.size())}, {"points", base64_of(coordinates)}};
-}
-
-Eigen::AlignedBox3d box_of(const Points& points) {
-    Eigen::AlignedBox3d box;
-    for (const auto& point : points) box.extend(point);
-    return box;
-}
 
 Points corners_of(const Eigen::AlignedBox3d& box) {
     Points corners;
@@ -72,6 +47,15 @@ GeometrySizes sizes_of(const Scene& scene, const std::vector<BoundarySurface>& s
         sizes.meshes[body.mesh].deformable += body.deformable ? 1 : 0;
     }
     return sizes;
+}
+
+/// The most bytes of contact surfaces of the first, the middle and the last frame.
+std::size_t most_surface_bytes(const Scene& scene, std::span<const std::size_t> frames,
+                               const FindSurfaces& find) {
+    std::size_t bytes = 0;
+    for (const auto i : std::set{frames.front(), frames[frames.size() / 2], frames.back()})
+        bytes = std::max(bytes, surface_bytes(find(i, scene.frame(i))));
+    return bytes;
 }
 
 /// The largest penetration depth of the contacts of all frames; 0 without contacts that penetrate.
@@ -107,7 +91,7 @@ public:
 private:
     void choose_frames(std::span<const std::size_t> wanted);
     void add_omission_notes(std::size_t wanted);
-    void add_frame(const Frame& frame);
+    void add_frame(std::size_t number, const Frame& frame);
     void add_contacts(const std::vector<ContactPoint>& found);
     void write_poses();
     void write_contacts();
@@ -120,6 +104,7 @@ private:
     std::vector<std::vector<Pose>> poses_;
     std::vector<Points> points_, normals_;    ///< shown contacts, by frame
     std::vector<std::vector<double>> depths_; ///< of these contacts; in the scene's unit of length
+    GeometrySurfaces contact_surfaces_;
     OrderedJson json_, notes_ = OrderedJson::array();
 };
 
@@ -129,6 +114,7 @@ GeometryJson::GeometryJson(const Scene& scene, std::span<const std::size_t> fram
     for (const auto& mesh : scene.meshes) surfaces_.push_back(surface_of(mesh));
     auto sizes = sizes_of(scene, surfaces_, frames.size());
     sizes.contacts = static_cast<bool>(parts.contacts);
+    if (parts.surfaces) sizes.surface_bytes = most_surface_bytes(scene, frames, parts.surfaces);
     cut_ = cut(sizes, budget);
     choose_frames(frames);
     add_omission_notes(frames.size());
@@ -196,7 +182,7 @@ void GeometryJson::add_meshes() {
     json_["body_kinds"] = base64_of(kinds);
 }
 
-void GeometryJson::add_frame(const Frame& frame) {
+void GeometryJson::add_frame(std::size_t number, const Frame& frame) {
     poses_.emplace_back(frame.poses.begin(), frame.poses.begin() + static_cast<std::ptrdiff_t>(cut_.bodies));
     OrderedJson deformed = OrderedJson::array();
     for (std::size_t body = 0; body < cut_.bodies; ++body) {
@@ -207,6 +193,7 @@ void GeometryJson::add_frame(const Frame& frame) {
     }
     json_["deformed"].push_back(std::move(deformed));
     if (parts_.contacts) add_contacts(parts_.contacts(frame));
+    if (parts_.surfaces) contact_surfaces_.add(parts_.surfaces(number, frame), cut_.surface_bytes);
 }
 
 /// Selects evenly spaced contacts.
@@ -225,9 +212,11 @@ void GeometryJson::add_contacts(const std::vector<ContactPoint>& found) {
 }
 
 void GeometryJson::add_frames() {
-    for (const auto frame : frames_) add_frame(scene_.frame(frame));
+    for (const auto frame : frames_) add_frame(frame, scene_.frame(frame));
     write_poses();
+    if (parts_.contacts || parts_.surfaces) json_["colours"] = scale_colours;
     if (parts_.contacts) write_contacts();
+    if (parts_.surfaces) contact_surfaces_.write(json_, notes_);
 }
 
 void GeometryJson::write_poses() {

@@ -3,6 +3,7 @@
 
 #include "scenes/contact.h"
 #include "scenes/export/geometry_cut.h"
+#include "scenes/export/surfaces.h"
 #include "scenes/scene.h"
 
 #include <functional>
@@ -18,6 +19,7 @@ struct GeometryParts {
     std::function<std::vector<std::uint32_t>(const Mesh&)> chunks;
     /// Returns the contacts of a frame; empty: the geometry has no contacts.
     std::function<std::vector<ContactPoint>(const Frame&)> contacts{};
+    FindSurfaces surfaces{}; ///< empty: the geometry has no contact surfaces
 };
 
 /// Frames of a scene as JSON text for a page that draws them: surfaces with the chunk of each triangle,

@@ -70,11 +70,12 @@ GeometryCut cut(const GeometrySizes& sizes, const GeometryBudget& budget) {
     }
     const auto deformed_a_body = sizes.bodies > 0 ? costs.deformed / sizes.bodies : 0;
     result.bodies = std::min(sizes.bodies, budget.bytes / 4 / (pose_bytes + deformed_a_body));
-    const auto frame_bytes = std::max<std::size_t>(result.bodies * (pose_bytes + deformed_a_body), 1);
+    const auto body_bytes = result.bodies * (pose_bytes + deformed_a_body);
     const auto for_contacts = sizes.contacts ? budget.bytes / 5 : 0;
-    const auto used = std::min(costs.bytes, half) + for_contacts;
-    result.frames = std::clamp<std::size_t>((budget.bytes - std::min(used, budget.bytes)) / frame_bytes, 1,
-                                            std::max<std::size_t>(sizes.frames, 1));
+    const auto left = budget.bytes - std::min(std::min(costs.bytes, half) + for_contacts, budget.bytes);
+    result.frames = std::clamp<std::size_t>(left / std::max<std::size_t>(body_bytes + sizes.surface_bytes, 1),
+                                            1, std::max<std::size_t>(sizes.frames, 1));
+    result.surface_bytes = left / result.frames - std::min(body_bytes, left / result.frames);
     result.contacts = std::min(for_contacts / result.frames / contact_bytes, budget.contacts);
     return result;
 }

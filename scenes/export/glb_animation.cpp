@@ -67,13 +67,31 @@ std::vector<float> key_weights(std::size_t keys) {
 
 /// An animation whose channels use the times of one accessor.
 struct Channels {
-    std::size_t times;
+    GlbFile& file;
+    std::vector<float> key_times;
+    std::size_t times = file.floats(key_times, 1);
     Json animation = {{"channels", Json::array()}, {"samplers", Json::array()}};
 
     void add(std::size_t values, std::size_t node, const char* path) {
         animation["channels"].push_back(
             {{"sampler", animation["samplers"].size()}, {"target", {{"node", node}, {"path", path}}}});
         animation["samplers"].push_back({{"input", times}, {"output", values}, {"interpolation", "LINEAR"}});
+    }
+
+    /// Shows a node from the time of a frame to that of the next. A scale of 0 hides it (glTF 2.0, section
+    /// 3.5.2).
+    void show(std::size_t node, std::size_t frame) {
+        std::vector<float> own_times, scales;
+        for (const std::size_t key : {std::size_t{0}, frame, frame + 1}) {
+            if (key == key_times.size() || (!own_times.empty() && own_times.back() == key_times[key]))
+                continue;
+            own_times.push_back(key_times[key]);
+            scales.insert(scales.end(), 3, key == frame ? 1.0f : 0.0f);
+        }
+        add(file.floats(scales, 3), node, "scale");
+        auto& sampler = animation["samplers"].back();
+        sampler["input"] = file.floats(own_times, 1);
+        sampler["interpolation"] = "STEP";
     }
 };
 
@@ -85,7 +103,8 @@ void add_targets(Json& json, std::size_t node, const Morph& morph) {
 
 } // namespace
 
-void add_animation(GlbFile& file, const Scene& scene, std::span<const std::size_t> frames) {
+void add_animation(GlbFile& file, const Scene& scene, std::span<const std::size_t> frames,
+                   std::span<const std::optional<std::size_t>> shown) {
     std::vector<Track> tracks(scene.bodies.size());
     std::vector<Morph> morphs(scene.bodies.size());
     bool deforms = false;
@@ -103,7 +122,7 @@ void add_animation(GlbFile& file, const Scene& scene, std::span<const std::size_
                 tracks[body].add(frame.poses[body]);
         }
     }
-    Channels channels{file.floats(key_times(scene, frames), 1)};
+    Channels channels{file, key_times(scene, frames)};
     const auto weights = deforms ? file.floats(key_weights(frames.size()), 1) : 0;
     for (std::size_t body = 0; body < tracks.size(); ++body) {
         if (scene.bodies[body].deformable) {
@@ -114,6 +133,8 @@ void add_animation(GlbFile& file, const Scene& scene, std::span<const std::size_
             channels.add(file.floats(tracks[body].rotations, 4), body, "rotation");
         }
     }
+    for (std::size_t i = 0; i < shown.size(); ++i)
+        if (shown[i]) channels.show(*shown[i], i);
     if (!channels.animation["channels"].empty()) file.add("animations", std::move(channels.animation));
 }
 

@@ -3,6 +3,7 @@
 
 #include "scenes/export/vtk_xml.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <numeric>
 
@@ -50,6 +51,10 @@ void SurfaceFrames::add(std::uint32_t frame, std::span<const ContactPoint> more,
     surfaces.corners.insert(surfaces.corners.end(), corners.corners.begin(), corners.corners.end());
     surfaces.pressures.insert(surfaces.pressures.end(), corners.pressures.begin(), corners.pressures.end());
     for (const auto end : corners.ends) surfaces.ends.push_back(first + end);
+}
+
+double SurfaceFrames::most_pressure() const {
+    return surfaces.pressures.empty() ? 0 : std::ranges::max(surfaces.pressures);
 }
 
 std::string surfaces_vtp(const SurfaceFrames& all) {

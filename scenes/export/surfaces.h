@@ -2,7 +2,9 @@
 #pragma once
 
 #include "scenes/contact.h"
+#include "scenes/scene.h"
 
+#include <functional>
 #include <span>
 #include <string>
 
@@ -16,7 +18,13 @@ struct SurfaceFrames {
 
     /// Appends the polygons of a frame.
     void add(std::uint32_t frame, std::span<const ContactPoint> more, const ContactSurfaces& corners);
+
+    /// The largest pressure at a corner; 0 without polygons.
+    double most_pressure() const;
 };
+
+/// Returns the contact surfaces of a frame, given with its number.
+using FindSurfaces = std::function<SurfaceFrames(std::size_t, const Frame&)>;
 
 /// The text of a .vtp file of polygons in double: point data pressure; cell data pressure (at the centroid),
 /// normal, area, frame, and the numbers of bodies and tetrahedra.

@@ -92,12 +92,12 @@ struct HardCount {
 /// with poses have `together` pairs and a pose for every frame.
 Scene hard_pair_scene(const HardFamily& family, std::uint64_t seed, double difficulty, HardCount count);
 
-/// The scene kinds hard:NAME, one a family. Parameters are difficulty and seed, for pairs also pairs and
-/// together.
+/// The scene kinds hard:NAME, one a family. Parameters are difficulty, seed and field, for pairs also pairs
+/// and together.
 std::span<const SceneKind> hard_kinds();
 
-/// Specifications of all families for "hard:all" and "hard:all:pairs=N,seed=N,together=N". Families of scenes
-/// ignore pairs and together. Any other specification is returned unchanged. Throws InputError.
+/// Specifications of all families for "hard:all" and "hard:all:pairs=N,seed=N,field=1,together=N". Families
+/// of scenes ignore pairs and together. Any other specification is returned unchanged. Throws InputError.
 std::vector<std::string> expand_hard(const std::string& specification);
 
 } // namespace tandem

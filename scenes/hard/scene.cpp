@@ -68,9 +68,18 @@ double difficulty_of(const HardFamily& family, std::span<const SceneParameter> p
     return difficulty;
 }
 
-Scene make_kind(const HardFamily& family, std::span<const SceneParameter> parameters) {
-    const auto difficulty = difficulty_of(family, parameters);
-    const auto seed = integer_parameter(parameters, "seed", 0, ~std::uint64_t{0});
+/// Gives each mesh a random pressure field above 0. A field of distances from the surface would be 0 in
+/// separate tetrahedra, which have no vertex inside.
+void add_fields(Scene& scene, std::uint64_t seed) {
+    Random random(seed);
+    for (auto& mesh : scene.meshes) {
+        mesh.pressures.resize(mesh.vertices.size());
+        for (double& pressure : mesh.pressures) pressure = 1 - random.uniform();
+    }
+}
+
+Scene make_without_fields(const HardFamily& family, double difficulty, std::uint64_t seed,
+                          std::span<const SceneParameter> parameters) {
     if (family.scene != nullptr) {
         Random random(seed);
         return family.scene(random, difficulty);
@@ -78,6 +87,13 @@ Scene make_kind(const HardFamily& family, std::span<const SceneParameter> parame
     return hard_pair_scene(family, seed, difficulty,
                            {integer_parameter(parameters, "pairs", 1, 1000000),
                             integer_parameter(parameters, "together", 1, 1000000)});
+}
+
+Scene make_kind(const HardFamily& family, std::span<const SceneParameter> parameters) {
+    const auto seed = integer_parameter(parameters, "seed", 0, ~std::uint64_t{0});
+    auto scene = make_without_fields(family, difficulty_of(family, parameters), seed, parameters);
+    if (integer_parameter(parameters, "field", 0, 1) != 0) add_fields(scene, seed);
+    return scene;
 }
 
 SceneKind kind_of(const HardFamily& family) {
@@ -88,6 +104,8 @@ SceneKind kind_of(const HardFamily& family) {
         {"difficulty", fmt::format("{}", family.knob.initial),
          fmt::format("{}, {}..{}", family.knob.meaning, family.knob.least, family.knob.most)});
     kind.parameters.push_back({"seed", "1", "seed of all random numbers"});
+    kind.parameters.push_back(
+        {"field", "0", "1: random pressures above 0 at all vertices, for contact_rule=pressure", "0"});
     if (family.scene == nullptr) {
         kind.parameters.push_back({"pairs", "64", "number of pairs, `together` in a frame"});
         kind.parameters.push_back(
@@ -106,10 +124,10 @@ std::string accepted(const HardFamily& family, std::string_view items) {
         const auto item = items.substr(0, items.find(','));
         items.remove_prefix(std::min(items.size(), item.size() + 1));
         const auto name = item.substr(0, item.find('='));
-        if (name != "seed" && name != "pairs" && name != "together")
-            throw InputError(
-                fmt::format("hard:all accepts seed, pairs and together, not '{}'; name one family", name));
-        if (name == "seed" || family.scene == nullptr)
+        if (name != "seed" && name != "field" && name != "pairs" && name != "together")
+            throw InputError(fmt::format(
+                "hard:all accepts seed, field, pairs and together, not '{}'; name one family", name));
+        if (name == "seed" || name == "field" || family.scene == nullptr)
             result += fmt::format("{}{}", result.empty() ? "" : ",", item);
     }
     return result;

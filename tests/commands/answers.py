@@ -257,7 +257,7 @@ class Answers(Case):
         self.assertIn("rounding=safe misses no pair that touches or overlaps", out)
         self.bad("unknown family of hard cases 'tuch'; the nearest is 'touch'", "check", "hard:tuch")
         self.bad("difficulty=10 is impossible; give a number from 1 to 9", "run", "hard:touch:difficulty=10")
-        self.bad("hard:all accepts seed, pairs and together", "check", "hard:all:difficulty=1")
+        self.bad("hard:all accepts seed, field, pairs and together", "check", "hard:all:difficulty=1")
 
     def test_a_baseline_finds_the_same_pairs(self):
         """Same pairs in the same record, when the program has it. It refuses what it does not support, and

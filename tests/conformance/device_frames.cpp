@@ -19,6 +19,24 @@ namespace {
 using namespace support;
 using ::testing::HasSubstr;
 
+/// The scene, in which every second body is deformable: its vertices have moved by its pose.
+Scene softened(Scene scene) {
+    const auto bodies = scene.bodies;
+    for (std::size_t body = 1; body < bodies.size(); body += 2) scene.bodies[body].deformable = true;
+    scene.frame = [rigid = scene.frame, bodies, meshes = scene.meshes](std::size_t number) {
+        auto frame = rigid(number);
+        for (std::size_t body = 1; body < bodies.size(); body += 2) {
+            if (bodies[body].deformable) continue;
+            const auto [rotation, translation] = std::exchange(frame.poses[body], {});
+            for (const auto& vertex : meshes[bodies[body].mesh].vertices)
+                frame.deformed[body].push_back(rotation * vertex + translation);
+        }
+        return frame;
+    };
+    scene.digest = digest_of(scene);
+    return scene;
+}
+
 class DeviceFrames : public OnDevice {
 protected:
     std::unique_ptr<Session> prepare(std::string_view name, const Scene& scene, const SettingTexts& given) {
@@ -100,6 +118,34 @@ TEST_P(DeviceFrames, DecideTheOriginOfTheSession) {
     }
 }
 
+/// Vertices of deformable bodies of two meshes, and of one without a field, get their pressures in the
+/// device's memory.
+TEST_P(DeviceFrames, KeepPressures) {
+    auto scene = softened(crowd(3, 12, 1.2));
+    scene.meshes[2].pressures.clear();
+    const SettingTexts polygons{{"contact_rule", "pressure"}, {"order", "canonical"}};
+    for (auto given : {polygons, SettingTexts{{"contact_rule", "pressure"}, {"precision", "double"}}}) {
+        expect_same_answers("tiled", scene, given);
+        given["output"] = "wrenches";
+        expect_same_answers("tiled", scene, given);
+    }
+    expect_same_answers("chunked", scene, polygons);
+    const Rows rows(scene.frame(0), false);
+    const auto found = prepare("tiled", scene, polygons)->run(rows.uploaded_to(on)).download_contacts();
+    const auto right = prepare("tiled", scene, polygons)->run(rows.host).download_contacts();
+    ASSERT_EQ(found.size(), right.size());
+    std::set<std::uint32_t> soft;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        EXPECT_EQ(found[i].pair, right[i].pair);
+        EXPECT_EQ(found[i].point, right[i].point);
+        EXPECT_EQ(found[i].depth, right[i].depth);
+        EXPECT_EQ(found[i].pressure, right[i].pressure);
+        for (const auto body : {found[i].pair.body_a, found[i].pair.body_b})
+            if (scene.bodies[body].deformable) soft.insert(scene.bodies[body].mesh);
+    }
+    EXPECT_EQ(soft, (std::set<std::uint32_t>{0, 1}));
+}
+
 TEST_P(DeviceFrames, CentreDistantMeshes) {
     const auto scene = with_distant_meshes(crowd(5, 8, 1.2), {1e6, 3e4, 0});
     for (const std::string precision : {"float", "double"})
@@ -166,8 +212,9 @@ TEST_P(DeviceFrames, ArePackedToTheBitsOfTheHost) {
     auto other = rows.host; // overwrites everything of the previous frame
     for (auto& v : other.deformed[1]) v *= 2;
     std::ranges::fill(other.poses, Pose{});
-    for (const auto precision : {Precision::fp32, Precision::fp64}) {
-        const Geometry geometry{.precision = precision};
+    for (const auto& geometry : {Geometry{.precision = Precision::fp32},
+                                 {.precision = Precision::fp64},
+                                 {.precision = Precision::fp32, .pressures = true}}) {
         Bodies bodies(on, scene, geometry, Bodies::Sharing::by_mesh);
         const Status status(on, Status::Writes::queued);
         const PackStage pack(bodies, {on.info().max_group_size == 1 ? 1u : 64u, 3});

@@ -98,6 +98,20 @@ class RankScenes(Case):
         self.assertLess(two["walked_tetrahedra"], one["walked_tetrahedra"])
         self.assertLess(sum(two["candidate_pairs"]), sum(one["candidate_pairs"]))
 
+    def test_contact_surfaces_and_wrenches_equal_one_process(self):
+        common = [f"run {PILE},refine=1 --pressure 1e6", *CELL, "--truth none --set order=canonical"]
+        for settings in (
+            "--set contact_rule=pressure --dump-surfaces",
+            "--set output=wrenches --dump-contacts",
+        ):
+            one, two = self.work / "one", self.work / "two"
+            self.output(*common, f"{settings} {one}")
+            status, text, errors = launch(of(2)(*common, f"--repeat 1 {settings} {two}"))
+            self.assertEqual((status, errors), (0, []), text)
+            self.assertIn("rank 1, host", text)
+            self.assertGreater(len(one.read_bytes()), 1000)
+            self.assertEqual(two.read_bytes(), one.read_bytes())
+
     def test_a_scene_of_twice_the_memory_of_a_rank(self):
         scene = ["pile:bodies=160,density=0.001,frames=1", "--repeat", 1, "--truth", "none", *CELL]
         status, _, errors = tandem("run", *scene, "--memory", 1 << 20)

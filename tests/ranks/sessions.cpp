@@ -253,6 +253,52 @@ TEST_F(RankSessions, CountsAndDigestsWithoutPairs) {
     }
 }
 
+/// Polygons of equal pressure, and their sums by body pair. Ghosts' pressures come with their meshes, and
+/// some bodies have no field.
+TEST_F(RankSessions, PolygonsAndWrenchesEqualOneDevice) {
+    auto scene = soft_procession(24, 3, 0.1);
+    scene.meshes.push_back(scene.meshes.front());
+    scene.meshes.back().pressures.clear();
+    for (std::uint32_t body = 5; body < 24; body += 7) scene.bodies[body].mesh = 1;
+    scene.digest = digest_of(scene);
+    for (const auto* traversal : algorithms())
+        for (const SettingTexts& given :
+             {SettingTexts{{"contact_rule", "pressure"}},
+              {{"contact_rule", "pressure"}, {"output", "wrenches"}},
+              {{"contact_rule", "pressure"}, {"output", "wrenches"}, {"precision", "double"}}}) {
+            SCOPED_TRACE(std::string(traversal->name()) + text(given));
+            expect_frames_equal(scene, *traversal, own_device(), given);
+            EXPECT_GT(summed(last_.contacts), 10u);
+        }
+}
+
+/// The rows of the job, in order, are those of one device; only some ranks have a body with a field.
+TEST_F(RankSessions, RowsOfPressureEqualOneDevice) {
+    auto scene = procession(24, 3, 0.35);
+    scene.meshes.push_back(scene.meshes.front());
+    scene.meshes.back().pressures.clear();
+    for (std::uint32_t body = 3; body < 24; ++body) scene.bodies[body].mesh = 1;
+    scene.digest = digest_of(scene);
+    const auto& traversal = algorithm("tiled");
+    for (const std::string output : {"pairs", "wrenches"}) {
+        const SettingTexts given{{"contact_rule", "pressure"}, {"output", output}, {"order", "canonical"}};
+        const auto right = alone(traversal, scene, given)->run(scene.frame(1)).download_contacts();
+        JobSession session(*job, traversal.prepare(own_device(), scene, settings_of(traversal, given), *job));
+        const auto found = session.run(FrameView(own_frame(scene, session, 1)).checked()).download_contacts();
+        if (!job->is_first()) continue;
+        ASSERT_EQ(found.size(), right.size());
+        EXPECT_GE(right.size(), 2u);
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            EXPECT_EQ(found[i].pair, right[i].pair);
+            EXPECT_EQ(found[i].point, right[i].point);
+            EXPECT_EQ(found[i].normal, right[i].normal);
+            EXPECT_EQ(found[i].depth, right[i].depth);
+            EXPECT_EQ(found[i].pressure, right[i].pressure);
+            EXPECT_EQ(found[i].feature, right[i].feature);
+        }
+    }
+}
+
 /// All ranks count from the middle of frame 0, and the job's contacts are in world coordinates.
 TEST_F(RankSessions, FarScenesHaveOneOrigin) {
     const auto& traversal = algorithm("tiled");

@@ -112,6 +112,34 @@ class Scenes(ReportCase):
         self.assertNotIn("253,231,37", drawn)
         self.assertIsNone(self.browser.run("tandem.depthLegend(tandem.sceneView.data)"))
 
+    def test_surfaces_have_the_colours_of_their_pressures(self):
+        pile = ("pile:bodies=6,refine=1,density=0.5,frames=2", "--pressure", "2e6", "--surfaces")
+        self.view(pile, 1400, 900)
+        looks = "tandem.sceneView.objects.map(({material}) => [material.transparent, material.opacity < 1])"
+        self.assertEqual({*map(tuple, self.browser.run(looks))}, {(True, True)})
+        self.assertGreater(self.hues(), 2)
+        most = self.browser.run("tandem.sceneView.data.most_pressure")
+        self.assertTrue(1e5 < most <= 2e6, most)
+        legend = self.text("#pressure-legend")
+        for part in ("pressure on contact surfaces", f"{round(most):,}"):
+            self.assertIn(part, legend)
+        self.assertRegex(self.text("#scene-words"), r"tetrahedra, [\d,]+ polygons\.$")
+        triangles = "tandem.sceneView.surfaces.object.geometry.index.count / 3"
+        corners = self.browser.run("[...tandem.bytes(tandem.sceneView.data.surfaces[1].corners)]")
+        self.browser.run("tandem.sceneView.show(1)")
+        self.assertEqual(self.browser.run(triangles), sum(corners) - 2 * len(corners))
+        hide = "tandem.sceneView.objects.forEach(object => { object.visible = false; })"
+        self.browser.run(hide)
+        drawn = self.browser.run(COLOURS)
+        self.assertGreater(len(drawn), 30, "colours between")
+        greenness = max(int(green) - int(red) for red, green, _ in (name.split(",") for name in drawn))
+        self.assertGreater(greenness, 60, "large pressures are green; small ones are violet")
+        self.browser.run(
+            "[...document.querySelectorAll('#view button')].find(b => b.textContent === 'Surfaces').click()"
+        )
+        self.assertEqual(self.browser.run(COLOURS), {}, "neither bodies nor surfaces")
+        self.assertEqual({*map(tuple, self.browser.run(looks))}, {(False, False)})
+
     def scrolls(self):
         self.browser.run("document.getElementById('scene-canvas').scrollIntoView({block: 'center'})")
         return self.browser.run("scrollY"), self.browser.run(CAMERA), self.browser.run(MIDDLE)

@@ -109,10 +109,12 @@ Action add_export(CLI::App& app) {
         "--geometry", options.geometry,
         "write surfaces, poses and deformed vertices to this JSON file, for HTML pages; about 4 MB at most");
     add_chunk_options(app, options);
-    auto* contacts = app.add_flag("--contacts", options.contacts,
-                                  "also write the contacts of every frame, with --vtu or --geometry");
-    app.add_option("--device", options.device, "the device that finds contacts (default: host)")
-        ->needs(contacts);
+    app.add_flag("--contacts", options.contacts,
+                 "also write the contacts of every frame, with --vtu or --geometry");
+    app.add_flag("--surfaces", options.surfaces,
+                 "also write the contact surfaces of every frame, coloured by pressure; bodies need pressure "
+                 "fields (--pressure)");
+    app.add_option("--device", options.device, "the device that finds contacts and surfaces (default: host)");
     const auto* csv =
         app.add_option("--csv", options.csv,
                        "write records as a CSV table to this file, or to standard output without a file; "

@@ -12,7 +12,7 @@ MAX_BYTES = 15_900_000
 
 
 def _parsed(arguments):
-    from ..report.scene import FLAGS, OPTIONS, add_options
+    from ..report.scene import FLAGS, OPTIONS, add_options, check_device
 
     parser = Parser("tandem report", __doc__)
     add = parser.add_argument
@@ -28,7 +28,8 @@ def _parsed(arguments):
     add_options(parser)
     options = parser.read(arguments)
     names = [name.replace("_", "-") for name in (*OPTIONS, *FLAGS) if hasattr(options, name)]
-    check_together(options, [*((name, "scene") for name in names), ("device", "contacts")])
+    check_together(options, [(name, "scene") for name in names])
+    check_device(options)
     return options
 
 

@@ -5,7 +5,7 @@ import re
 
 from ..files import check_output
 from ..report.assembly import SCENE, open_page, write_page
-from ..report.scene import add_options, shown_scene, words_of
+from ..report.scene import add_options, check_device, shown_scene, words_of
 from . import Parser, check_together, run
 
 
@@ -22,7 +22,8 @@ def _parsed(arguments):
     add("-o", "--output", metavar="FILE", help=page)
     add_options(parser)
     options = parser.read(arguments)
-    check_together(options, [("pose", "mesh"), ("device", "contacts")])
+    check_together(options, [("pose", "mesh")])
+    check_device(options)
     return options
 
 

@@ -10,12 +10,12 @@ import signal
 import subprocess
 
 from ..commands import within
-from ..errors import OutputError
+from ..errors import BadUse, OutputError
 from ..files import temporary_folder
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 OPTIONS = ("mesh", "pose", "frames", "every", "device", "duplicates", "weld", "pressure")
-FLAGS = ("contacts", "corners", "only_tetrahedra")
+FLAGS = ("contacts", "surfaces", "corners", "only_tetrahedra")
 
 
 def add_options(parser):
@@ -34,7 +34,17 @@ def add_options(parser):
     for name in ("corners", "only-tetrahedra"):
         add(f"--{name}", action="store_true", help="of mesh files, as in 'tandem export'")
     add("--contacts", action="store_true", help="show contacts and normals in every frame")
-    add("--device", metavar="DEVICE", help="the device that finds contacts (default: host)")
+    surfaces = (
+        "show contact surfaces in every frame, coloured by pressure; bodies need pressure fields (--pressure)"
+    )
+    add("--surfaces", action="store_true", help=surfaces)
+    add("--device", metavar="DEVICE", help="the device that finds contacts and surfaces (default: host)")
+
+
+def check_device(options):
+    """Raises BadUse for --device without anything to find."""
+    if options.device is not None and not (options.contacts or options.surfaces):
+        raise BadUse("--device requires --contacts or --surfaces; see --help")
 
 
 class ExportEnded(SystemExit):

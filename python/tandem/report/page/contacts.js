@@ -2,18 +2,12 @@
 // Contacts of a scene: points and normals, coloured by depth, and the legend of these colours.
 "use strict";
 
-/** Colours from depth 0 to the deepest contact. Lightness rises steadily: readers with colour blindness can order them (viridis, van der Walt and Smith 2015). */
-tandem.depthColours = [0x440154, 0x3b528b, 0x21918c, 0x5ec962, 0xfde725];
 tandem.plainContact = 0xff2d95;
 tandem.noDepth = 65535;
 
 /** The colour of a depth from 0 to 65534, or of a contact without depth. */
-tandem.depthColour = depth => {
-  if (depth === tandem.noDepth) return new THREE.Color(tandem.plainContact);
-  const place = depth / (tandem.noDepth - 1) * (tandem.depthColours.length - 1);
-  const from = Math.min(Math.floor(place), tandem.depthColours.length - 2);
-  return new THREE.Color(tandem.depthColours[from]).lerp(new THREE.Color(tandem.depthColours[from + 1]), place - from);
-};
+tandem.depthColour = (data, depth) => depth === tandem.noDepth ? new THREE.Color(tandem.plainContact)
+  : tandem.scaleColour(data, depth / (tandem.noDepth - 1));
 
 /** Depths of the contacts of a frame, from 0 to 65534; none have depths if none penetrates. */
 tandem.depthsOf = (data, frame) => data.deepest > 0 ? tandem.shorts(data.contacts[frame].depths)
@@ -22,15 +16,9 @@ tandem.depthsOf = (data, frame) => data.deepest > 0 ? tandem.shorts(data.contact
 /** The scale of depths with its ends and its middle, in the scene's unit; nothing if no contact penetrates. */
 tandem.depthLegend = data => {
   if (!data.contacts || !(data.deepest > 0)) return null;
-  const {element, number} = tandem;
-  const text = part => `${number(part * data.deepest)} ${data.units}`;
   const plain = data.contacts.some((_, frame) => tandem.depthsOf(data, frame).includes(tandem.noDepth));
-  const css = tandem.depthColours.map(colour => "#" + colour.toString(16).padStart(6, "0")).join(", ");
-  return element("div", {class: "legend", id: "depth-legend"}, element("span", {}, "depth of contacts"),
-    element("div", {}, element("div", {class: "scale", role: "img", style: `background: linear-gradient(to right, ${css})`,
-      "aria-label": `Colours of depths from 0, dark violet, to ${text(1)}, yellow`}),
-    element("div", {class: "ends"}, ...["0", text(0.5), text(1)].map(end => element("span", {}, end)))),
-    plain ? element("span", {}, "pink: a contact without depth") : null);
+  return tandem.scaleLegend(data, "depth-legend", "depth of contacts", part => `${tandem.number(part * data.deepest)} ${data.units}`,
+    plain ? "pink: a contact without depth" : null);
 };
 
 /** Draws the contacts of a frame over the bodies. */
@@ -61,7 +49,7 @@ tandem.Contacts = class {
     const lines = new Float32Array(points.length * 2);
     const colours = new Float32Array(points.length);
     for (let i = 0; i < points.length; i += 3) {
-      tandem.depthColour(depths[i / 3]).toArray(colours, i);
+      tandem.depthColour(this.data, depths[i / 3]).toArray(colours, i);
       for (let axis = 0; axis < 3; ++axis) {
         lines[2 * i + axis] = points[i + axis];
         lines[2 * i + 3 + axis] = points[i + axis] + length * normals[i + axis] / 127;

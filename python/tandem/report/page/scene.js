@@ -33,6 +33,8 @@ tandem.SceneView = class {
     this.kinds = tandem.bytes(data.body_kinds);
     this.makeBodies();
     this.contacts = data.contacts ? new tandem.Contacts(data, this.scene) : null;
+    if (data.surfaces) this.surfaces = new tandem.Surfaces(data, this.scene);
+    this.showSurfaces(Boolean(data.surfaces));
     this.show(0);
     this.lookAtAll();
   }
@@ -141,7 +143,14 @@ tandem.SceneView = class {
     }
     this.deformable.forEach((object, i) => this.setPositions(object.geometry, tandem.points(this.data.deformed[frame][i])));
     this.contacts?.show(frame, this.radius);
+    this.surfaces?.show(frame);
     this.draw();
+  }
+
+  /** Shows the contact surfaces inside translucent bodies, or bodies alone. */
+  showSurfaces(shown) {
+    if (this.surfaces) this.surfaces.visible = shown;
+    for (const {material} of this.objects) Object.assign(material, {transparent: shown, opacity: shown ? tandem.translucent : 1, depthWrite: !shown});
   }
 
   /** Sets the camera so that all bodies that are not fixed fill the view, or all bodies if all are fixed. */

@@ -6,8 +6,9 @@
 tandem.sceneWords = (data, frame) => {
   const time = data.times ? `, ${tandem.number(data.times[frame])} s` : "";
   const contacts = data.contacts ? `, ${tandem.number(data.contacts[frame].found)} ${data.contacts[frame].found === 1 ? "contact" : "contacts"}` : "";
+  const surfaces = data.surfaces ? `, ${tandem.number(data.surfaces[frame].found)} ${data.surfaces[frame].found === 1 ? "polygon" : "polygons"}` : "";
   const bodies = data.bodies === data.of_bodies ? tandem.count(data.bodies, "body", "bodies") : `${data.bodies} of ${data.of_bodies} bodies`;
-  return `Frame ${data.frames[frame]}${time}: ${bodies} of ${tandem.number(data.tetrahedra)} tetrahedra${contacts}.`;
+  return `Frame ${data.frames[frame]}${time}: ${bodies} of ${tandem.number(data.tetrahedra)} tetrahedra${contacts}${surfaces}.`;
 };
 
 tandem.view = data => {
@@ -18,7 +19,7 @@ tandem.view = data => {
     "Page Up and Page Down go through frames"});
   const stage = element("div", {class: "stage"}, canvas);
   const words = element("p", {role: "status", "aria-live": "polite", id: "scene-words"}, tandem.sceneWords(data, 0));
-  tandem.show("view", facts, ...notes, stage, words, ...[tandem.depthLegend(data)].filter(legend => legend));
+  tandem.show("view", facts, ...notes, stage, words, ...[tandem.depthLegend(data), tandem.pressureLegend(data)].filter(legend => legend));
   // The scene is made when it comes near the visible part of the page, so that a page with records loads faster.
   new IntersectionObserver((entries, observer) => {
     if (!entries.some(entry => entry.isIntersecting)) return;
@@ -75,19 +76,22 @@ tandem.Player = class {
       .map(([value, text]) => ({value, text})), value => this.view.colour(value));
     const frames = last > 0 ? [element("label", {class: "wide"}, "frame", this.slider), button("◀", "Frame before", () => this.step(-1)), this.playButton,
       button("▶", "Next frame", () => this.step(1))] : [];
-    const contacts = this.view.data.contacts ? [this.contactButton()] : [];
+    const {contacts, surfaces} = this.view.data;
+    const parts = [contacts && this.partButton("Contacts", shown => { this.view.contacts.visible = shown; }),
+      surfaces && this.partButton("Surfaces", shown => this.view.showSurfaces(shown))].filter(button => button);
     return element("div", {class: "controls", role: "group", "aria-label": "The scene"}, ...frames,
       button("←", "Turn left", () => this.turn(-1, 0)), button("→", "Turn right", () => this.turn(1, 0)), button("↑", "Turn up", () => this.turn(0, 1)),
-      button("↓", "Turn down", () => this.turn(0, -1)), button("+", "Nearer", () => this.zoom(0.85)), button("−", "Farther", () => this.zoom(1 / 0.85)), colours, ...contacts);
+      button("↓", "Turn down", () => this.turn(0, -1)), button("+", "Nearer", () => this.zoom(0.85)), button("−", "Farther", () => this.zoom(1 / 0.85)), colours, ...parts);
   }
 
-  contactButton() {
+  /** A button that shows and hides what lies over or in the bodies. */
+  partButton(name, show) {
     const made = tandem.element("button", {type: "button", "aria-pressed": "true", onclick: () => {
       const shown = made.getAttribute("aria-pressed") !== "true";
       made.setAttribute("aria-pressed", String(shown));
-      this.view.contacts.visible = shown;
+      show(shown);
       this.view.draw();
-    }}, "Contacts");
+    }}, name);
     return made;
   }
 
