@@ -8,10 +8,17 @@
 KERNEL void find_closest(GLOBAL const uint* found, GLOBAL const uint* owners, GLOBAL const uint* ids,
                          GLOBAL const uint* contact_ids, GLOBAL const real* contact_values, uint capacity,
                          GLOBAL uint* table, uint places, GLOBAL uint* status) {
+    LOCAL_ARRAY(GroupContact, best, GROUP_SIZE);
     const ContactTable all = {found, owners, ids, contact_ids, contact_values};
-    const uint rows = rows_in(status + STATUS_CONTACTS, capacity);
-    for (ulong i = GLOBAL_ID; i < rows; i += GLOBAL_COUNT)
-        if (place_in_table(&all, i, table, places) == places) status[STATUS_EXCEEDED + EXCEEDED_TABLE] = 1u;
+    const ulong rows = rows_in(status + STATUS_CONTACTS, capacity);
+    ulong first = GROUP_ID * (ulong)GROUP_SIZE;
+    do { // at least once, as loops with barriers must: see refit.cl
+        const uint count = first < rows ? of_group(rows - first) : 0u;
+        const uint place = place_in_group(&all, first, count, table, places, best);
+        if (LOCAL_ID < count && place == places) status[STATUS_EXCEEDED + EXCEEDED_TABLE] = 1u;
+        BARRIER; // the next contacts replace these
+        first += GLOBAL_COUNT;
+    } while (first < rows);
 }
 
 // Copies the contacts in the table, in any order, and counts them. Copies nothing if some did not fit.

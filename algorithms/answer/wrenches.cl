@@ -137,6 +137,28 @@ DEVICE void put_group(const WrenchSum* sum, LOCAL uint* words, GLOBAL uint* sums
         counter_add_wide(sums + (ulong)place * SUM_WORDS + i, (ulong)words[i + 1] << 32 | words[i]);
 }
 
+// Continues with the sum of a body pair.
+DEVICE void begin_sum(WrenchSum* sum, uint place, GLOBAL uint* sums) {
+    if (place == sum->place) return;
+    put_sum(sum, sums);
+    clear_sum(sum);
+    sum->place = place;
+}
+
+// Adds the polygon of a contact; returns whether its numbers are small enough.
+DEVICE int add_row(WrenchSum* sum, const ContactTable* all, ulong contact, GLOBAL const real* poses,
+                   GLOBAL const real* arms) {
+    const PairMembers pair = members_of_contact(all, contact);
+    const BodyArm a = arm_of(arms, pair.a.body);
+    const BodyArm b = arm_of(arms, pair.b.body);
+    const WrenchUnits units = units_of(&a, &b);
+    const Pose pose = pose_at(poses, pair.a.body);
+    const RealRow pivot = {a.pivot.x, a.pivot.y, a.pivot.z, 0};
+    GLOBAL const RealRow* row = (GLOBAL const RealRow*)all->contact_values + 2 * contact;
+    return add_polygon(sum, row[0], row[1], placed(&pose, (pair.a.flags & BODY_IN_WORLD) != 0u, pivot),
+                       &units);
+}
+
 // `arms`: arm_of() of each body. `sums`: SUM_WORDS for each place of the table, 0 before. The rows of a group
 // lie together, because polygons of a body pair do.
 KERNEL void add_wrenches(GLOBAL const uint* found, GLOBAL const uint* owners, GLOBAL const uint* ids,
@@ -144,32 +166,26 @@ KERNEL void add_wrenches(GLOBAL const uint* found, GLOBAL const uint* owners, GL
                          GLOBAL const real* poses, GLOBAL const real* arms, GLOBAL uint* table, uint places,
                          GLOBAL uint* sums, GLOBAL uint* status) {
     LOCAL_ARRAY(uint, words, SUM_WORDS + 1);
+    LOCAL_ARRAY(GroupContact, best, GROUP_SIZE);
     const ContactTable all = {found, owners, ids, contact_ids, contact_values};
     const ulong rows = contacts_fit(status, capacity) ? status[STATUS_CONTACTS] : 0u;
     const ulong share = (rows + GROUP_COUNT - 1u) / GROUP_COUNT;
     const ulong end = (GROUP_ID + 1u) * share < rows ? (GROUP_ID + 1u) * share : rows;
     WrenchSum sum;
     clear_sum(&sum);
-    for (ulong i = GROUP_ID * share + LOCAL_ID; i < end; i += GROUP_SIZE) {
-        const PairMembers pair = members_of_contact(&all, i);
-        const uint place = place_in_table(&all, i, table, places);
-        if (place == places) status[STATUS_EXCEEDED + EXCEEDED_TABLE] = 1u;
-        if (place == places) continue;
-        if (place != sum.place) {
-            put_sum(&sum, sums);
-            clear_sum(&sum);
-            sum.place = place;
+    ulong first = GROUP_ID * share;
+    do { // at least once, as loops with barriers must: see refit.cl
+        const uint count = first < end ? of_group(end - first) : 0u;
+        const uint place = place_in_group(&all, first, count, table, places, best);
+        if (LOCAL_ID < count && place == places) status[STATUS_EXCEEDED + EXCEEDED_TABLE] = 1u;
+        if (place != places) {
+            begin_sum(&sum, place, sums);
+            if (!add_row(&sum, &all, first + LOCAL_ID, poses, arms))
+                status[STATUS_EXCEEDED + EXCEEDED_UNITS] = 1u;
         }
-        const BodyArm a = arm_of(arms, pair.a.body);
-        const BodyArm b = arm_of(arms, pair.b.body);
-        const WrenchUnits units = units_of(&a, &b);
-        const Pose pose = pose_at(poses, pair.a.body);
-        const RealRow pivot = {a.pivot.x, a.pivot.y, a.pivot.z, 0};
-        GLOBAL const RealRow* row = (GLOBAL const RealRow*)contact_values + 2 * i;
-        const int fits = add_polygon(&sum, row[0], row[1],
-                                     placed(&pose, (pair.a.flags & BODY_IN_WORLD) != 0u, pivot), &units);
-        if (!fits) status[STATUS_EXCEEDED + EXCEEDED_UNITS] = 1u;
-    }
+        BARRIER; // the next contacts replace these
+        first += GROUP_SIZE;
+    } while (first < end);
     put_group(&sum, words, sums);
 }
 

@@ -179,8 +179,9 @@ TEST_P(PressuresOf, ImpossibleSettingsAreRefused) {
     };
     EXPECT_THAT(refusal(scene_, {{"contact_rule", "sat"}, {"pressure_slab", "on"}}),
                 HasSubstr("pressure_slab=on does not go with contact_rule=sat"));
-    if (on.info().max_group_size == 1)
+    if (on.info().max_group_size == 1) {
         EXPECT_THAT(refusal(scene_, {{"k", "6"}, {"pressure_slab", "on"}}), HasSubstr("goes with k=18"));
+    }
     EXPECT_THAT(refusal(scene_, {{"self", "on"}}),
                 HasSubstr("self=on does not go with contact_rule=pressure"));
     EXPECT_THAT(refusal(scene_, {{"motion", "linear"}, {"decision", "exact"}}),
