@@ -54,7 +54,7 @@ DEVICE void ask(const Candidates* all, ulong base, ulong count, LOCAL uint* aske
         const uint before = entry;
         for (uint i = 0; i < present; ++i) { // without a branch, because none would be foreseen
             asked[entry] = (uint)base + i;
-            entry += 1u - is_left_out(all, (uint)base + i);
+            entry += 1u - is_without_contact(all, (uint)base + i);
         }
         group[GROUP_LEFT_OUT] += present - (entry - before);
     }
@@ -67,7 +67,7 @@ DEVICE void ask(const Candidates* all, ulong base, ulong count, LOCAL uint* aske
         const ulong index = base + i * GROUP_SIZE;
         const flags is_one = index < count;
         present += BIT(is_one);
-        lacking |= is_left_out(all, (uint)(is_one ? index : base)) << i;
+        lacking |= is_without_contact(all, (uint)(is_one ? index : base)) << i;
     }
     const uint without = COUNT_ONES(lacking & ((1u << present) - 1u));
     if (without != 0u) LOCAL_ATOMIC_ADD(group + GROUP_LEFT_OUT, without);

@@ -28,6 +28,7 @@ bool contacts_are_equal_for_every_k(const Settings& settings) {
     return settings[parameters::output] == Output::contacts
            && settings[parameters::decision] == DecisionPrecision::exact
            && !has_near_pairs(settings[parameters::contact_rule])
+           && !needs_pressures(settings[parameters::contact_rule])
            && bounds_miss_nothing(geometry_of(settings));
 }
 
@@ -46,7 +47,8 @@ ContactSettings contact_settings_of(const Settings& settings) {
     }
     if (settings[parameters::contact_rule] == ContactRule::none) return result;
     result.rule = settings[parameters::contact_rule];
-    result.decision = settings[parameters::decision];
+    // A polygon is in both tetrahedra, so that nothing else decides.
+    result.decision = needs_pressures(result.rule) ? DecisionPrecision::none : settings[parameters::decision];
     result.walked = walked_of(settings);
     if (has_near_pairs(result.rule)) result.margin = settings[parameters::margin];
     result.closest = settings[parameters::output] == Output::distances;

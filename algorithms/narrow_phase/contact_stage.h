@@ -51,7 +51,7 @@ private:
     void generate(const KernelOf<kernels::contacts::GenerateContacts>& kernel, LaunchShape shape,
                   const Range& range, const ContactRows& contacts);
     /// Whether only the pairs that certificates leave open need verdicts.
-    bool decides_open() const { return decision_ && decision_->uses_certificates() && !has_polygons_; }
+    bool decides_open() const { return decision_ && decision_->uses_certificates(); }
     const Buffer& verdicts() const { return decision_ ? decision_->verdicts() : nothing_; }
 
     const Buffer& list(std::size_t number) const;

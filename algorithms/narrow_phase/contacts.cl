@@ -16,7 +16,7 @@ DEVICE uints try_pair(const Candidates* all, uints index, flags apart, float mar
     flags lacks = NEVER;
     if (BOUNDARY_NEEDED + PRESSURES_NEEDED != 0) {
         uints without = SAME_WORD(0);
-        FOR_PACK(i) AT(without, i) = is_left_out(all, (uint)AT(index, i));
+        FOR_PACK(i) AT(without, i) = is_without_contact(all, (uint)AT(index, i));
         lacks = without != 0u;
     }
     uints state = lacks ? SAME_WORD(STATE_LEFT_OUT) : SAME_WORD(PAIR_REJECTED);

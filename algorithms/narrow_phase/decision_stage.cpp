@@ -37,8 +37,6 @@ DecisionStage::DecisionStage(const Bodies& bodies, const ContactSettings& settin
     auto defines = row_defines(bodies.geometry(), shape.group_size);
     define(defines, parameters::pair_layout, bodies.pair_layout());
     defines["BOUNDARY_NEEDED"] = std::to_string(boundaries_needed(settings.rule));
-    defines["PRESSURES_NEEDED"] =
-        needs_pressures(settings.rule) && !bodies.geometry().pressure_slab ? "1" : "0";
     auto& device = bodies.device();
     std::vector<Column> columns{{"verdicts", 1}, {"pairs undecided in double", 4}};
     if (uses_certificates()) columns.push_back({"pairs undecided by the filter", 4});

@@ -19,7 +19,7 @@
 DEVICE uints filtered(const Candidates* all, uints index) {
     Points a[4];
     Points b[4];
-    load_pair(all, index, a, b, 0, 0);
+    load_pair(all, index, a, b, 0);
     if (OVER_OPEN) return certain_verdict(a, b, ALWAYS);
     const uints certain = certificate_of(a, b);
     const flags open = certain == (uint)CERTAIN_NOTHING;
@@ -43,7 +43,7 @@ KERNEL void filter_pairs(GLOBAL const uint* found, uint first, uint pair_capacit
         const uints index =
             OVER_OPEN ? first + PAIR_OF_OPEN(entries_of(open, i, present)) : numbers_from((uint)i, present);
         uints skipped = SAME_WORD(0);
-        if (OVER_OPEN == 0) FOR_PACK(k) AT(skipped, k) = is_left_out(&all, (uint)AT(index, k));
+        if (OVER_OPEN == 0) FOR_PACK(k) AT(skipped, k) = lacks_boundary(&all, (uint)AT(index, k));
         if (ALL(skipped != 0u)) continue;
         const uints verdict = filtered(&all, index);
         FOR_PACK(k) {

@@ -25,10 +25,10 @@ KERNEL void recheck_pairs(GLOBAL const uint* found, uint first, uint pair_capaci
     for (ulong i = (RECHECK_ALL ? (ulong)first : 0u) + GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
         const uint index = RECHECK_ALL ? (uint)i : undecided_by_filter[i];
         if (index < first) continue;
-        if (RECHECK_ALL != 0 && is_left_out(&all, index)) continue;
+        if (RECHECK_ALL != 0 && lacks_boundary(&all, index)) continue;
         Point a[4];
         Point b[4];
-        load_pair(&all, index, a, b, 0, 0);
+        load_pair(&all, index, a, b, 0);
         const uint verdict = certain_verdict(a, b, ALWAYS);
         verdicts[index] = (uchar)verdict;
         if (verdict == VERDICT_OPEN)
@@ -44,7 +44,7 @@ KERNEL void gather_corners(GLOBAL const uint* found, GLOBAL const uint* owners, 
     const Candidates all = {found, owners, poses, tetrahedra, vertices, 0};
     for (uint i = GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
         Point corner[8];
-        load_pair(&all, undecided_by_double[(ulong)first + i], corner, corner + 4, 0, 0);
+        load_pair(&all, undecided_by_double[(ulong)first + i], corner, corner + 4, 0);
         for (int j = 0; j < 8; ++j) {
             GLOBAL real* to = corners + (ulong)i * CORNER_REALS + 3 * j;
             to[0] = corner[j].x;

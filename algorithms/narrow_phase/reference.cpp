@@ -106,9 +106,7 @@ bool loads(ReferencePair<Real>& pair, const Corners<Real>& a, const Corners<Real
         if (!pair.apart) ++counts.degenerate;
         return false;
     }
-    if (pair.apart || settings.decision != DecisionPrecision::fp32 || needs_pressures(settings.rule)
-        || !pair.separated())
-        return true;
+    if (pair.apart || settings.decision != DecisionPrecision::fp32 || !pair.separated()) return true;
     ++counts.rejected;
     pair.apart = true;
     return has_near_pairs(settings.rule);

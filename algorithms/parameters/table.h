@@ -137,7 +137,8 @@ inline constexpr Setting<DecisionPrecision> decision{
     "",
     "how to decide whether a pair collides: fp32: separating axes in the cell's precision; recheck: a "
     "certified filter, then double; fp64: double; exact: as recheck, then exact arithmetic on the host; "
-    "none: no pair is rejected, as in the paper's code; usual: recheck, but exact with motion=linear, and "
+    "none: no pair is rejected, as in the paper's code; of contact_rule=pressure, polygons decide; usual: "
+    "recheck, but exact with motion=linear, and "
     "fp32 "
     "on a device without double"};
 

@@ -15,7 +15,7 @@ from hydroelastic import scenes, shapes
 from hydroelastic.comparison import TOLERANCE, Comparison, Single
 from hydroelastic.library import Library
 from hydroelastic.polygons import Cells
-from hydroelastic.program import Program
+from hydroelastic.program import Cell, Program
 
 MODULUS = 1e7  # Pa
 LEAST_AREA = (
@@ -122,7 +122,7 @@ def compare(options):
 
 
 def time_case(pair, translation, options, folder):
-    """(polygons of the first frame, {who: seconds of frames})."""
+    """(polygons of the first frame, {Drake or a cell: seconds of frames})."""
     files = written(pair, folder)
     poses = scenes.moved(translation, FRAMES)
     library = Library(files, MODULUS)
@@ -130,24 +130,30 @@ def time_case(pair, translation, options, folder):
     count = library.seconds(poses[0])[1]
     seconds = collections.defaultdict(list)
     for _ in range(options.rounds):
-        seconds["Drake"] += [library.seconds(pose)[0] for pose in poses]
-        for precision in TOLERANCE:
-            seconds[precision] += program.seconds(precision)
+        seconds[None] += [library.seconds(pose)[0] for pose in poses]
+        for cell in cells_of(options):
+            seconds[cell] += program.seconds(cell)
     return count, seconds
+
+
+def cells_of(options):
+    """The first one is compared with Drake."""
+    others = [Cell("double", device, threads=0) for device in options.device or []]
+    return [*map(Cell, TOLERANCE), *others]
 
 
 def time(options):
     """Returns the exit code."""
-    print("ms per frame                                           medians                      lowest")
-    print(
-        "                                    polygons   Drake  double   float  ratio   Drake  double   float  ratio"
-    )
-    for name, pair, translation in scenes.timed():
+    names = ["1 thread", "in float", *(cell.device for cell in cells_of(options)[2:])]
+    print("ms per frame, medians; the last ratio is of the lowest")
+    print(f"{'':36} polygons   Drake" + "".join(f" {name:>9}" for name in names) + "  ratios")
+    for name, pair, translation in scenes.timed(options.most):
         with tempfile.TemporaryDirectory() as folder:
             count, seconds = time_case(pair, translation, options, pathlib.Path(folder))
-        print(f"{name:36} {count:7,}", end="")
-        for statistic in (numpy.median, numpy.min):
-            drake, double, single = (1e3 * statistic(seconds[who]) for who in ("Drake", *TOLERANCE))
-            print(f" {drake:7.3f} {double:7.3f} {single:7.3f} {drake / double:6.2f}", end="")
-        print(flush=True)
+        cells = [None, *cells_of(options)]
+        medians, lowest = ([1e3 * of(seconds[cell]) for cell in cells] for of in (numpy.median, numpy.min))
+        print(
+            f"{name:36} {count:8,} {medians[0]:7.3f}" + "".join(f" {ms:9.3f}" for ms in medians[1:]), end=""
+        )
+        print(f" {medians[0] / medians[1]:6.2f} {lowest[0] / lowest[1]:6.2f}", flush=True)
     return 0

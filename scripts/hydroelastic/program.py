@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """tandem's side: the program, with one scene of all poses."""
 
+import dataclasses
 import json
 
 import numpy
@@ -8,18 +9,27 @@ import numpy
 from boxes.program import output
 from hydroelastic.polygons import Polygons
 
-SETTINGS = ("contact_rule=pressure", "threads=1")
-OPTIONS = (
-    "--algorithm",
-    "tiled",
-    "--device",
-    "host",
-    "--truth",
-    "none",
-    "--no-check",
-    "--no-count",
-    "--quiet",
-)
+OPTIONS = ("--algorithm", "tiled", "--truth", "none", "--no-check", "--no-count", "--quiet")
+
+
+@dataclasses.dataclass(frozen=True)
+class Cell:
+    """What runs where. threads: of device host; 0: one per core."""
+
+    precision: str
+    device: str = "host"
+    threads: int = 1
+
+    @property
+    def options(self):
+        settings = {
+            "contact_rule": "pressure",
+            "pressure_slab": "on",
+            "precision": self.precision,
+            "threads": self.threads,
+        }
+        words = (("--set", f"{name}={value}") for name, value in settings.items())
+        return ["--device", self.device, *(word for pair in words for word in pair)]
 
 
 class Program:
@@ -33,7 +43,7 @@ class Program:
         scene = {"meshes": meshes, "bodies": bodies, "frames": len(poses)}
         (folder / "scene.json").write_text(json.dumps(scene), encoding="ascii")
 
-    def _run(self, precision, *options):
+    def _run(self, cell, *options):
         output(
             self._path,
             "run",
@@ -42,7 +52,7 @@ class Program:
             f"0:{self._frames - 1}",
             "--pressure",
             self._modulus,
-            *(word for one in (*SETTINGS, f"precision={precision}") for word in ("--set", one)),
+            *cell.options,
             *OPTIONS,
             *options,
         )
@@ -50,7 +60,7 @@ class Program:
     def polygons(self, precision):
         """Polygons of each frame."""
         rows = self._folder / "rows.csv"
-        self._run(precision, "--repeat", "1", "--dump-contacts", rows)
+        self._run(Cell(precision), "--repeat", "1", "--dump-contacts", rows)
         table = numpy.loadtxt(rows, delimiter=",", skiprows=1, ndmin=2).reshape(-1, 13)
         parts = (table[table[:, 0] == frame] for frame in range(self._frames))
         return [
@@ -58,10 +68,10 @@ class Program:
             for part in parts
         ]
 
-    def seconds(self, precision):
+    def seconds(self, cell):
         """Seconds of each frame, of the third replay of all: caches are warm, as in a loop of Drake's."""
         records = self._folder / "records.jsonl"
-        self._run(precision, "--repeat", "3", "--out", records)
+        self._run(cell, "--repeat", "3", "--out", records)
         record = json.loads(records.read_text(encoding="utf-8").splitlines()[-1])
         records.unlink()
         return [1e-9 * nanoseconds for nanoseconds in record["total_ns"]["frames"][-1]]

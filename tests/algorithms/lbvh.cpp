@@ -101,7 +101,8 @@ StoredTrees::StoredTrees(const Bodies& bodies, std::uint32_t group_size)
     : bodies_(bodies), device_(bodies.device()), group_size_(group_size) {
     lay_out_bodies(lay_out_meshes());
     upload_order();
-    const auto node = static_cast<std::uint64_t>(bodies.geometry().k) * real_bytes(bodies.geometry());
+    const auto node =
+        static_cast<std::uint64_t>(ends_of_node(bodies.geometry())) * real_bytes(bodies.geometry());
     nodes_ = device_.allocate(slots_ * node, "nodes");
     volumes_ = device_.allocate(bodies.count() * node, "volumes");
     skipped_flags_ = device_.allocate(slots_ * 4, "skipped tetrahedra");
