@@ -78,39 +78,13 @@ DEVICE void make_contacts(Features features, const MeetingPair* pair, ContactBat
 // Whether certify_pairs and separate_pairs have not counted the states of all pairs.
 #define COUNTS_STATES (AT_ONCE || HAS_FIELD)
 
-// Of pairs that may have polygons: a pair with a polygon, without one, or without a certain volume.
-DEVICE uints state_of_polygon(Features features, LOCAL const MeetingPair* meeting) {
+// Counts pairs that might have polygons and have none.
+DEVICE void count_polygons(Features features, flags wanted, LOCAL const MeetingPair* meeting,
+                           LOCAL uint* group) {
+    if (!HAS_FIELD) return;
     uints state = meeting->support.near > (real)0 ? SAME_WORD(PAIR_MEETING) : SAME_WORD(PAIR_REJECTED);
-    return features.low == 0u ? SAME_WORD(PAIR_DEGENERATE) : state;
-}
-
-// Pairs of a work-item: their numbers, which elements have one, and whether they are known to be apart.
-typedef struct {
-    uints index;
-    flags present, apart;
-} PairsInHand;
-
-// Prepares the contacts of pairs, and returns their features. Counts the states of pairs that no kernel
-// before has counted.
-DEVICE Features begin_pairs(const Candidates* all, const PairsInHand* hand, GLOBAL const uchar* verdicts,
-                            float margin, LOCAL MeetingPair* meeting, LOCAL uint* group) {
-    Features features = {SAME_WORD(0), SAME_WORD(0)};
-    uints state = hand->present ? SAME_WORD(PAIR_MEETING) : SAME_WORD(PAIR_ABSENT);
-    flags wanted = hand->present;
-    flags apart = hand->apart;
-    if (AT_ONCE) {
-        const uints tried =
-            try_pair(all, hand->index, known_apart(verdicts, hand->index), margin, &meeting->pair);
-        state = hand->present ? tried : state;
-        apart = state == (uint)PAIR_NEAR;
-        wanted &= apart | (state == (uint)PAIR_MEETING);
-    }
-    if (ANY(wanted)) features = prepare_contacts(all, hand->index, apart, margin, meeting);
-    features.low = wanted ? features.low : SAME_WORD(0);
-    features.high = wanted ? features.high : SAME_WORD(0);
-    if (HAS_FIELD) state = wanted ? state_of_polygon(features, meeting) : state;
-    if (COUNTS_STATES) count_state(state, group);
-    return features;
+    state = features.low == 0u ? SAME_WORD(PAIR_DEGENERATE) : state;
+    count_state(wanted ? state : SAME_WORD(PAIR_ABSENT), group);
 }
 
 // The pairs of a launch: those that meet, then, from a group's first place on, near ones, because a group's
@@ -162,8 +136,19 @@ KERNEL void generate_contacts(GLOBAL const uint* found, uint first, uint pair_ca
             const uints index = AT_ONCE   ? numbers_from((uint)base, present)
                                 : is_near ? entries_of(near, base - range.first_near, present)
                                           : entries_of(meeting, base, present);
-            const PairsInHand hand = {index, first_elements(present), is_near ? ALWAYS : NEVER};
-            features = begin_pairs(&all, &hand, verdicts, margin, pairs + LOCAL_ID, group);
+            flags wanted = first_elements(present);
+            flags apart = is_near ? ALWAYS : NEVER;
+            if (AT_ONCE) {
+                const uints state =
+                    try_pair(&all, index, known_apart(verdicts, index), margin, &pairs[LOCAL_ID].pair);
+                count_state(wanted ? state : SAME_WORD(PAIR_ABSENT), group);
+                apart = state == (uint)PAIR_NEAR;
+                wanted &= apart | (state == (uint)PAIR_MEETING);
+            }
+            if (ANY(wanted)) features = prepare_contacts(&all, index, apart, margin, pairs + LOCAL_ID);
+            features.low = wanted ? features.low : SAME_WORD(0);
+            features.high = wanted ? features.high : SAME_WORD(0);
+            count_polygons(features, wanted, pairs + LOCAL_ID, group);
         }
 #if PACK > 1
         make_contacts(features, pairs, &batch, &sink);

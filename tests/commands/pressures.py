@@ -79,6 +79,19 @@ class Pressures(Case):
         )
         self.assertEqual((sums["work"]["contacts"], errors), ([6], []))
 
+    def test_slabs_of_pressures(self):
+        """Pairs without a common pressure are left out, by the truth, too: none counts as missed."""
+        found = {}
+        for slab in ("off", "on"):
+            options = f"--frames 0 --repeat 1 --truth pairs --set pressure_slab={slab}"
+            record, errors = self.run_of(f"run spheres:hint=1 {options}")
+            self.assertEqual((record["status"], errors), ("ok", []))
+            errors = record["error"]["truth"]
+            self.assertEqual((errors["missed_touching"], errors["missed_overlapping"]), (0, 0))
+            found[slab] = record["work"]["candidate_pairs"][0], record["work"]["contacts"][0]
+        self.assertLess(found["on"][0], 0.6 * found["off"][0])
+        self.assertEqual(found["on"][1], found["off"][1])
+
     def test_what_is_told(self):
         message = "tandem: scene meshes: 1 of 2 bodies have no pressure field and make no polygons (--pressure MODULUS gives them one)"
         told = self.run_of(self.beside(self.own, self.plain))
