@@ -214,8 +214,10 @@ private:
     std::vector<std::pair<std::int64_t, std::int64_t>> intervals_;
 };
 
-/// Splits the defines into the compiled ones, as text, and the rest.
-std::pair<std::string, Defines> split(const Defines& defines) {
+/// Splits the defines into the compiled ones, as text, and the rest. PRESSURE_SLAB goes with K, and is 0
+/// where it is left out.
+std::pair<std::string, Defines> split(Defines defines) {
+    if (defines.contains("K")) defines.emplace("PRESSURE_SLAB", "0");
     std::string fixed;
     Defines rest;
     for (const auto& [name, value] : defines) {

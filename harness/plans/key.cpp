@@ -19,12 +19,13 @@ std::string models_of(const Cell& cell) {
 }
 
 /// Settings that came after the first records, with the values that these stand for.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 9> later_settings{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 10> later_settings{
     {{"first_body_pair", "0"},
      {"most_body_pairs", "0"},
      {"margin", "0"},
      {"motion", "none"},
      {"order", "any"},
+     {"pressure_slab", "off"},
      {"rebuild", "8"},
      {"self", "off"},
      {"sizes", "own"},

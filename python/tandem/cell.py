@@ -30,6 +30,7 @@ BOUNDS = {
     "origin": "world",
     "margin": "0",
     "motion": "none",
+    "pressure_slab": "off",
     "self": "off",
     "output": "pairs",
 }
