@@ -17,7 +17,7 @@ using Corners = std::array<std::array<Real, 3>, 4>;
 /// Pairs without contacts, by reason, and pairs that the stages of the decision leave open.
 struct ContactCounts {
     std::uint64_t degenerate = 0;          ///< no certain volume, or an unusable coordinate
-    std::uint64_t rejected = 0;            ///< found apart
+    std::uint64_t rejected = 0;            ///< found apart; by rule pressure: without a polygon
     std::uint64_t undecided_by_filter = 0; ///< left open by the certified filter
     std::uint64_t undecided_by_double = 0; ///< left open by double
     std::uint64_t without_boundary = 0;    ///< lack boundary faces that the rule needs; in no other count
