@@ -22,9 +22,8 @@ std::string with_field(const HardFamily& family) {
 class HardPolygons : public OnDevice {
 protected:
     /// Compares the first frame with the reference, and returns its polygons.
-    std::vector<ContactPoint> expect_right(const HardFamily& family, const Scene& scene, SettingTexts given) {
+    std::vector<ContactPoint> expect_right(const Scene& scene, SettingTexts given) {
         given["contact_rule"] = "pressure";
-        given["origin"] = family.distant ? "auto" : "world";
         given["pair_capacity"] = "8192";
         const auto session = prepare(algorithm("tiled"), scene, given);
         const auto frame = counted_from(session->origin(), scene.frame(0));
@@ -46,13 +45,71 @@ TEST_P(HardPolygons, AreThoseOfTheReference) {
         for (const auto& mesh : scene.meshes) ASSERT_GT(std::ranges::min(mesh.pressures), 0);
         for (const std::string precision : {"float", "double"}) {
             if (!long_form() && GetParam() != "host" && precision == "double") continue;
-            const auto rows = expect_right(family, scene, {{"precision", precision}});
+            const auto rows = expect_right(
+                scene, {{"precision", precision}, {"origin", family.distant ? "auto" : "world"}});
             polygons += rows.size();
             with_polygons += rows.empty() ? 0 : 1;
         }
     }
     EXPECT_GT(polygons, 1000u);
     EXPECT_GT(with_polygons, 30u);
+}
+
+/// Appends a tetrahedron, whose corners are rounded to float.
+void append(Mesh& mesh, const std::array<Eigen::Vector3d, 4>& corners) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const auto& corner : corners) mesh.vertices.emplace_back(corner.cast<float>().cast<double>());
+    mesh.tetrahedra.push_back({first, first + 1, first + 2, first + 3});
+}
+
+/// The linear pressure of the mesh's last tetrahedron at a place.
+double pressure_at(const Mesh& mesh, const Eigen::Vector3d& place) {
+    Eigen::Matrix4d corners;
+    Eigen::Vector4d values;
+    for (int i = 0; i < 4; ++i) {
+        corners.row(i) << mesh.vertices[mesh.vertices.size() - 4 + i].transpose(), 1;
+        values[i] = mesh.pressures[mesh.pressures.size() - 4 + i];
+    }
+    const Eigen::Vector4d linear = corners.fullPivLu().solve(values);
+    return linear.head<3>().dot(place) + linear[3];
+}
+
+/// Pairs of tetrahedra, a small one in a large one, far from all others. A face of the small one lies in the
+/// plane of equal pressure but for the rounding of its pressures.
+Scene planes_through_faces(std::uint32_t pairs) {
+    Random random(3);
+    Scene scene;
+    scene.name = scene.key = "planes_through_faces";
+    scene.meshes.resize(2);
+    auto& large = scene.meshes[0];
+    auto& small = scene.meshes[1];
+    for (std::uint32_t i = 0; i < pairs; ++i) {
+        const Eigen::Vector3d center(5. * (i % 16) + 1, 5. * (i / 16 % 16) + 1, 5. * (i / 256) + 1);
+        const auto turn = random.rotation();
+        const auto placed = [&](double x, double y, double z) -> Eigen::Vector3d {
+            return center + turn * Eigen::Vector3d(x, y, z);
+        };
+        append(large, {placed(2, 0, -1.4), placed(-2, 0, -1.4), placed(0, 2, 1.4), placed(0, -2, 1.4)});
+        for (int k = 0; k < 4; ++k) large.pressures.push_back(random.uniform(1, 2));
+        const auto near = [&]() -> Eigen::Vector3d { return center + 0.2 * random.direction(); };
+        append(small, {near(), near(), near(), near()});
+        for (int k = 0; k < 4; ++k)
+            small.pressures.push_back(pressure_at(large, small.vertices[small.vertices.size() - 4 + k]));
+        small.pressures.back() += i % 2 == 0 ? 0.5 : -0.5;
+    }
+    for (auto* mesh : {&large, &small}) complete_mesh(*mesh, scene.name);
+    scene.bodies = {{.mesh = 0}, {.mesh = 1}};
+    scene.frame_count = 1;
+    scene.frame = [](std::size_t) { return Frame{.poses = {{}, {}}, .deformed = {{}, {}}}; };
+    scene.digest = digest_of(scene);
+    return scene;
+}
+
+/// Whoever takes the roundings of such a plane for its distance loses polygons.
+TEST_P(HardPolygons, OfPlanesThroughAFaceAreThoseOfTheReference) {
+    const auto scene = planes_through_faces(600);
+    for (const std::string precision : {"float", "double"})
+        EXPECT_GT(expect_right(scene, {{"precision", precision}, {"origin", "world"}}).size(), 150u);
 }
 
 double longest_edge(const TetraCorners& corners) {
