@@ -224,6 +224,20 @@ QueueSizes own_sizes(const Settings& settings, const DeviceInfo& info) {
     return sizes;
 }
 
+/// With full_exit a launch ends as soon as a queue has no room for this many more items (settle_round of
+/// gproximity.cl), so that in smaller queues every launch would end after one round. Throws InputError.
+void check_margin(const Settings& settings, const QueueSizes& sizes, const DeviceInfo& info) {
+    const std::uint64_t group_size = info.max_group_size == 1 ? 1 : number(settings, parameters::group_size);
+    const auto margin = 2 * group_size + sizes.local_queue;
+    if (sizes.queue_capacity > margin) return;
+    throw InputError(
+        fmt::format("setting queue_bytes={} makes {} queues of {} items on {}, but with full_exit=yes a "
+                    "launch ends where "
+                    "{} items are free; give at least --set queue_bytes={}, or set queue_capacity",
+                    settings.text("queue_bytes"), sizes.groups, sizes.queue_capacity, info.id, margin,
+                    (margin + 1) * item_bytes * sizes.groups));
+}
+
 QueueSizes queue_sizes(const Settings& settings, const DeviceInfo& info) {
     const bool as_release = settings[sizes_by] == QueueSizing::release;
     auto sizes = as_release ? released_sizes(settings, info) : own_sizes(settings, info);
@@ -239,7 +253,8 @@ QueueSizes queue_sizes(const Settings& settings, const DeviceInfo& info) {
     set_from(sizes.idle_limit, idle_limit, 1);
     sizes.local_queue = local_items(settings, info);
     sizes.queue_capacity = number(settings, queue_capacity);
-    if (sizes.queue_capacity == 0)
+    const bool is_derived = sizes.queue_capacity == 0;
+    if (is_derived)
         sizes.queue_capacity = capacity_from_bytes(settings, array_bytes(settings, info), sizes.groups);
     sizes.queue_capacity = std::max(sizes.queue_capacity, 2u);
     sizes.balance_group_size = std::min(number(settings, balance_group_size), info.max_group_size);
@@ -247,6 +262,7 @@ QueueSizes queue_sizes(const Settings& settings, const DeviceInfo& info) {
     sizes.full_exit = settings[full_exit];
     sizes.upload = settings[upload];
     sizes.balance = settings[balance];
+    if (is_derived && sizes.full_exit) check_margin(settings, sizes, info);
     return sizes;
 }
 

@@ -40,7 +40,7 @@ void refuse_large_array(const BuildContext& context) {
         return;
     throw InputError(
         fmt::format("setting queue_bytes=device stands for {:.2f} GB on {}, and three buffers of "
-                    "this size do not fit; give --set queue_bytes=4194304, or --memory",
+                    "this size do not fit; give --set queue_bytes=67108864, or --memory",
                     static_cast<double>(bytes) / 1e9, device.info().id));
 }
 

@@ -135,18 +135,26 @@ int check_hard(const RunOptions& options, const std::vector<Cell>& cells,
     return code;
 }
 
-/// Replaces queue arrays that are larger than the default, unless the request names their size. Answers do
-/// not depend on it, and uploads of gigabytes a batch would take most of a check.
+/// Shortens the queues of arrays that are larger than the default, unless the request names a size. Answers
+/// do not depend on it, and uploads of gigabytes a batch would take most of a check. Queues of 4096 items are
+/// longer than what ends a launch on any device: two groups of 1024 and a local queue of 2048.
 std::vector<Cell> with_small_queues(std::vector<Cell> cells, const Request& request) {
-    constexpr std::string_view name = "queue_bytes";
-    if (std::ranges::any_of(request.sets, [&](const auto& set) { return set.first == name; })) return cells;
-    for (auto& cell : cells)
-        for (const auto* parameter : cell.algorithm->parameters()) {
-            if (parameter->name != name) continue;
-            const auto bytes = parameter->parse(cell.settings.text(name));
-            const bool is_of_device = bytes < parameter->least;
-            if (is_of_device || bytes > parameter->initial) cell.settings.set({parameter, 4 << 20});
-        }
+    constexpr std::string_view name = "queue_bytes", shorter = "queue_capacity";
+    if (std::ranges::any_of(request.sets,
+                            [&](const auto& set) { return set.first == name || set.first == shorter; }))
+        return cells;
+    for (auto& cell : cells) {
+        const auto named = [&](std::string_view wanted) {
+            const auto all = cell.algorithm->parameters();
+            const auto found = std::ranges::find(all, wanted, &Parameter::name);
+            return found == all.end() ? nullptr : *found;
+        };
+        const auto* array = named(name);
+        if (array == nullptr) continue;
+        const auto bytes = array->parse(cell.settings.text(name));
+        const bool is_of_device = bytes < array->least;
+        if (is_of_device || bytes > array->initial) cell.settings.set({named(shorter), 4096});
+    }
     return cells;
 }
 

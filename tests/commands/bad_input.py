@@ -135,7 +135,7 @@ class BadInput(Case):
             self.assertEqual((status, len(errors)), (2, 1), errors)
             self.assertRegex(
                 errors[0],
-                r"setting queue_bytes=device stands for \d+\.\d\d GB on .* do not fit; give --set queue_bytes=4194304, or --memory",
+                r"setting queue_bytes=device stands for \d+\.\d\d GB on .* do not fit; give --set queue_bytes=67108864, or --memory",
             )
             self.assertTrue(out.read_bytes().startswith(before))
             self.bad("queues", *arguments, "--set", "queue_bytes=67108864,1099511627776", code=3)

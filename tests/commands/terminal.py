@@ -81,7 +81,11 @@ class Terminal(Case):
 
     def test_dry_run_lists_the_keys_of_records(self):
         out = self.work / "keys.jsonl"
-        words = ("run", *SMALL, "--algorithm all --preset all --no-check --no-count --set queue_bytes=65536")
+        words = (
+            "run",
+            *SMALL,
+            "--algorithm all --preset all --no-check --no-count --set queue_capacity=4096",
+        )
         status, text, errors = tandem(*words, "--dry-run")
         self.assertEqual(status, 0, errors)
         self.assertEqual(tandem(*words, "--out", out)[0], 0)

@@ -38,7 +38,7 @@ TEST_P(BroadSessions, EveryPresetWithEveryBroadPhase) {
             if (!long_form() && p.name.starts_with("published-")) continue;
             for (const std::string broad : {"sphere", "sphere_boxes", "tight", "device"}) {
                 SettingTexts given{{"broad", broad}};
-                if (declares(*traversal, "queue_bytes")) given["queue_bytes"] = "1048576";
+                if (declares(*traversal, "queue_capacity")) given["queue_capacity"] = "4096";
                 const auto settings = resolve(traversal->parameters(), p.values, given, traversal->name());
                 const std::array devices{&on};
                 SCOPED_TRACE(fmt::format("{} {}{}", traversal->name(), p.name, text(given)));

@@ -117,7 +117,7 @@ void Ladder::expect_right(const Traversal& traversal, const Preset& preset, cons
     given["motion"] = mode.motion;
     given["contact_rule"] = "none";
     given["work_items"] = "256"; // more, and larger queues, would only cost time
-    if (declares(traversal, "queue_bytes")) given["queue_bytes"] = "1048576";
+    if (declares(traversal, "queue_capacity")) given["queue_capacity"] = "4096";
     const auto name =
         fmt::format("{} {} self={} motion={}", traversal.name(), preset.name, mode.self, mode.motion);
     std::unique_ptr<Session> session;

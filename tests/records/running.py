@@ -192,7 +192,7 @@ class Running(Case):
     def test_tables_fit_a_hundred_columns(self):
         status, text, _ = tandem(
             "run plates:count=2 --frames 0 --device host --algorithm all --preset all --truth none "
-            "--no-count --set pair_capacity=65536 --set queue_bytes=65536"
+            "--no-count --set pair_capacity=65536 --set queue_capacity=4096"
         )
         self.assertEqual(status, 0, text)
         tables = re.split(r"\n\n.*: right", text)[0].split("\n", 1)[1]

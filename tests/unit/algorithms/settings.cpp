@@ -130,13 +130,29 @@ TEST(Settings, ReleasedSizesEqualThePresetOfTheGpu) {
     EXPECT_EQ(derived.queue_capacity, named.queue_capacity);
     EXPECT_EQ(derived.initial_items, named.initial_items);
     EXPECT_EQ(derived.idle_limit, named.idle_limit);
-    const SettingTexts small{{"queue_bytes", "12000"}, {"groups", "10"}};
-    EXPECT_EQ(sizes_on(k40c, "published", small).second.queue_capacity, 100u);
     EXPECT_THAT(
         message_of([&] {
             sizes_on(k40c, "published", {{"queue_bytes", "all"}});
         }),
         HasSubstr("queue_bytes=all is impossible; give an integer from 12 to 1099511627776, or device"));
+}
+
+/// A launch of the release ends where a queue has no room for a round of 2 x 992 items and the local queue of
+/// 1023 on a K40c with its 30 queues.
+TEST(Settings, QueuesAreLargerThanWhatEndsALaunch) {
+    const auto k40c = gpu_of(15, 1024, 49152);
+    const auto with = [&](const std::string& preset, std::uint64_t bytes) {
+        return sizes_on(k40c, preset, {{"queue_bytes", std::to_string(bytes)}}).second.queue_capacity;
+    };
+    constexpr std::uint64_t least = 30 * 12 * 3008;
+    EXPECT_EQ(with("published", least), 3008u);
+    EXPECT_EQ(with("published-k40c", least), 3008u);
+    EXPECT_THAT(message_of([&] { with("published", least - 1); }),
+                HasSubstr("makes 30 queues of 3007 items"));
+    EXPECT_THAT(message_of([&] { with("published", least - 1); }),
+                HasSubstr("give at least --set queue_bytes=1082880, or set queue_capacity"));
+    EXPECT_LT(with("fair", 12000), 100u) << "its launches do not end with the queue";
+    EXPECT_EQ(sizes_on(k40c, "published", {{"queue_capacity", "16"}}).second.queue_capacity, 16u);
 }
 
 /// Values that tiled derives from device and scene; on a GPU, more than six directions depend on both.

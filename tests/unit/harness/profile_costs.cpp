@@ -45,7 +45,7 @@ void for_cells(const Visit& visit) {
                 if (std::ranges::any_of(given, [&](auto& s) { return !declares(*traversal, s.first); }))
                     continue;
                 given.insert({{"pair_capacity", "4096"}, {"contact_capacity", "4096"}});
-                if (declares(*traversal, "queue_bytes")) given.insert({"queue_bytes", "65536"});
+                if (declares(*traversal, "queue_capacity")) given.insert({"queue_capacity", "4096"});
                 const auto cell = make_cell(*traversal, preset, given, {&device("host")});
                 Replays replays(cell, scene, range);
                 replays.instrumented();
