@@ -14,8 +14,9 @@ enum class Schedule {
 
 /// Nodes that a step of a walk descends.
 enum class Descent {
-    both,  ///< both nodes at once, as in the paper's code
-    larger ///< only the larger of two nodes of different size
+    both,   ///< both nodes at once, as in the paper's code
+    larger, ///< the larger node only, which the paper calls biggest first, as gProximity does
+    unlike  ///< the larger node if it is more than four times as wide as the other, else both
 };
 
 inline constexpr Setting<std::int64_t> chunk_bytes{"chunk_bytes", 8000, ValueRange{1, std::int64_t{1} << 30},
@@ -38,11 +39,12 @@ inline constexpr Setting<Schedule> schedule{
     "stride apart, as in the paper's code"};
 inline constexpr Setting<Descent> descent{
     "descent",
-    Descent::larger,
-    {{"larger", Descent::larger}, {"both", Descent::both}},
-    "DESCEND_LARGER",
-    "nodes that a step of a walk descends: only the larger of two nodes of different size, or always both, "
-    "as in the paper's code"};
+    Descent::unlike,
+    {{"both", Descent::both}, {"larger", Descent::larger}, {"unlike", Descent::unlike}},
+    "DESCENT",
+    "nodes that a step of a walk descends: both: both, as in the paper's code; larger: the larger one, which "
+    "the paper calls biggest first; unlike: the larger one if it is more than four times as wide, else "
+    "both"};
 inline constexpr Setting<bool> root_test{
     "root_test",
     true,

@@ -22,7 +22,7 @@ ChunkedWalker::ChunkedWalker(const ChunkTrees& trees, const BuildContext& contex
       threshold_(context.settings[chunked_parameters::seed_threshold]),
       target_(context.settings[chunked_parameters::seed_target]),
       schedule_(context.settings[chunked_parameters::schedule]),
-      larger_(context.settings[chunked_parameters::descent] == chunked_parameters::Descent::larger),
+      descent_(context.settings[chunked_parameters::descent]),
       // Body pairs found on the device have passed the same test.
       root_test_(context.settings[chunked_parameters::root_test]
                  && context.settings[parameters::broad] != Broad::device) {
@@ -44,8 +44,7 @@ void ChunkedWalker::do_compile(const WalkBuild& build) {
     compile_kernel(device(), count_kernel_, of_seeds);
     compile_kernel(device(), scan_kernel_, of_seeds);
     build.add_to(defines);
-    define(defines, chunked_parameters::descent,
-           larger_ ? chunked_parameters::Descent::larger : chunked_parameters::Descent::both);
+    define(defines, chunked_parameters::descent, descent_);
     if (is_in_groups())
         compile_kernel(device(), groups_kernel_, defines);
     else

@@ -56,7 +56,7 @@ private:
     std::int64_t threshold_; ///< 0: target_ divided by the number of body pairs
     std::int64_t target_;
     chunked_parameters::Schedule schedule_;
-    bool larger_;
+    chunked_parameters::Descent descent_;
     bool root_test_;
     std::uint32_t top_level_ = 0; ///< highest level at which any pair of the scene's meshes has seeds
     GrowableBuffer handed_;       ///< seeds handed down to even and odd levels, one column each

@@ -73,23 +73,26 @@ TEST_P(Mechanisms, DescendingTheLargerOfUnlikeNodesNeedsFewerTests) {
     for (std::uint32_t body = 0; body < scene.bodies.size(); body += 2)
         scene.bodies[body].mesh = static_cast<std::uint32_t>(scene.meshes.size() - 1);
     const auto& traversal = algorithm("chunked");
-    const auto tests = [&](const std::string& descent, const std::string& schedule, Digest& digest) {
-        const auto session = prepare_on(
-            on, traversal, scene, {{"descent", descent}, {"schedule", schedule}, {"contact_rule", "none"}});
+    std::set<std::uint64_t> pairs;
+    const auto tests = [&](const Traversal& walk, SettingTexts given) {
+        given["contact_rule"] = "none";
+        const auto session = prepare_on(on, walk, scene, given);
         session->count_work(true);
         const auto result = run_among_all(*session, scene, scene.frame(0));
-        digest = result.digest();
+        pairs.insert(result.digest().count);
         return result.work.at("bvtt_nodes");
     };
-    Digest larger_digest, both_digest, again;
-    const auto larger = tests("larger", "group", larger_digest);
-    const auto both = tests("both", "group", both_digest);
-    EXPECT_GT(both_digest.count, 1000u);
-    EXPECT_EQ(larger_digest, both_digest);
-    EXPECT_LT(5 * larger, 4 * both);
-    EXPECT_EQ(tests("larger", "item", again), larger);
-    EXPECT_EQ(tests("both", "item", again), both);
-    EXPECT_EQ(again, both_digest);
+    std::map<std::string, std::uint64_t> by_descent;
+    for (const std::string descent : {"both", "larger", "unlike"}) {
+        by_descent[descent] = tests(traversal, {{"descent", descent}, {"schedule", "group"}});
+        EXPECT_EQ(tests(traversal, {{"descent", descent}, {"schedule", "item"}}), by_descent[descent]);
+    }
+    EXPECT_LT(5 * by_descent["unlike"], 4 * by_descent["both"]);
+    // Trees of one chunk, in which gProximity descends as the paper's biggest first does.
+    EXPECT_EQ(tests(traversal, {{"descent", "larger"}, {"leaves", "2048"}, {"builder", "morton"}}),
+              tests(algorithm("gproximity"), {{"builder", "morton"}}));
+    EXPECT_GT(*pairs.begin(), 1000u);
+    EXPECT_EQ(pairs.size(), 1u);
 }
 
 TEST_P(Mechanisms, ResidentChunkedWaitsOnce) {

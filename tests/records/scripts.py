@@ -211,6 +211,19 @@ class Scripts(ScriptCase):
             self.assertEqual(path.read_bytes(), once)
         self.assertEqual(presets, {"grouped", "paper", "published"})
 
+    def test_the_rule_of_descent_has_its_new_name(self):
+        """Larger is another rule in records with setting copies."""
+        walks = committed("cpu/walks.jsonl")
+        record = next(r for r in walks if r.get("settings", {}).get("descent") == "unlike")
+        older = json.loads(json.dumps(record).replace("descent=unlike", "descent=larger"))
+        older["settings"]["descent"] = "larger"
+        today = json.loads(json.dumps(older))
+        today["settings"]["copies"] = "none"
+        path = self.work / "descents.jsonl"
+        path.write_text("".join(json.dumps(one) + "\n" for one in (older, today)))
+        self.output_of("convert_records", path)
+        self.assertEqual([json.loads(line) for line in path.read_text().splitlines()], [record, today])
+
     def test_other_kinds(self):
         profile = self.work / "own.jsonl"
         self.output(
