@@ -212,8 +212,9 @@ Trace Device::finish() {
     const auto begin = Clock::now();
     do_finish();
     // A wait counts only while work is in flight. Its stage is that of the last submitted command.
-    const auto last = std::find_if(trace_.events.rbegin(), trace_.events.rend(),
-                                   [](const Event& e) { return e.command != Command::host_work; });
+    const auto last = std::find_if(trace_.events.rbegin(), trace_.events.rend(), [](const Event& e) {
+        return e.command != Command::host_work && e.command != Command::phase;
+    });
     if (last != trace_.events.rend() && !last->blocked)
         record({.command = Command::wait, .stage = last->stage, .label = "finish", .blocked = true}, begin);
     read_times();
@@ -265,6 +266,16 @@ HostWork::HostWork(Device& device, Stage stage, std::string_view label)
 HostWork::~HostWork() {
     if (!timed_ || device_.clocks() == Clocks::off) return;
     device_.record({.command = Command::host_work, .stage = stage_, .label = std::string(label_)}, begin_);
+}
+
+HostPhase::HostPhase(Device& device, std::string_view label)
+    : device_(device), timed_(device.clocks() == Clocks::on), label_(label) {
+    if (timed_) begin_ = Clock::now();
+}
+
+HostPhase::~HostPhase() {
+    if (!timed_ || device_.clocks() == Clocks::off) return;
+    device_.record({.command = Command::phase, .label = std::string(label_)}, begin_);
 }
 
 } // namespace tandem

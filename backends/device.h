@@ -214,6 +214,7 @@ protected:
 
 private:
     friend class BufferGuards;
+    friend class HostPhase;
     friend class HostWork;
     friend class StageScope;
 
@@ -318,6 +319,22 @@ public:
 private:
     Device& device_;
     Stage stage_;
+    bool timed_;
+    std::string_view label_;
+    std::chrono::steady_clock::time_point begin_;
+};
+
+/// Times a part of a frame, such as those that the paper's release times: by the host's clock, all commands,
+/// waits and host work in it included. Its time belongs to no stage. `label` must outlive it.
+class HostPhase {
+public:
+    HostPhase(Device& device, std::string_view label);
+    ~HostPhase();
+    HostPhase(const HostPhase&) = delete;
+    HostPhase& operator=(const HostPhase&) = delete;
+
+private:
+    Device& device_;
     bool timed_;
     std::string_view label_;
     std::chrono::steady_clock::time_point begin_;

@@ -33,13 +33,13 @@ inline constexpr std::array<std::string_view, 15> stage_names{
     "transform", "refit", "broad",      "seed",        "traverse", "balance", "contact", "sort",
     "reduce",    "solve", "preprocess", "postprocess", "read",     "write",   "exchange"};
 
-enum class Command { launch, upload, download, clear, wait, host_work };
+enum class Command { launch, upload, download, clear, wait, host_work, phase };
 
-/// One executed command, or one span of host work. Times in nanoseconds.
+/// One executed command, or one span of host work or of a phase. Times in nanoseconds.
 struct Event {
     Command command = Command::launch;   ///< kind of the event
     Stage stage = Stage::write;          ///< its times belong to it; waits: that of the last command
-    std::string label = {};              ///< kernel entry, buffer label or name of the host work
+    std::string label = {};              ///< kernel entry, buffer label, name of the host work or phase
     std::uint64_t bytes = 0;             ///< moved by transfers and clears
     std::uint64_t groups = 0;            ///< launches: work-groups
     std::uint32_t group_size = 0;        ///< launches: work-items of a group

@@ -34,8 +34,8 @@ const std::vector<Preset> all_presets{
     {"published",
      "the paper: k = 8, 8000-byte chunks, everything converted and transferred in every frame",
      {parameters::k(8), parameters::origin(Origin::world), parameters::residency(Residency::published),
-      parameters::broad(Broad::sphere_boxes), schedule(Schedule::item), descent(Descent::both),
-      seed_threshold(10000000), parameters::group_size(64), root_test(false)},
+      parameters::copies(TreeCopies::pair), parameters::broad(Broad::sphere_boxes), schedule(Schedule::item),
+      descent(Descent::both), seed_threshold(10000000), parameters::group_size(64), root_test(false)},
      {},
      true}};
 

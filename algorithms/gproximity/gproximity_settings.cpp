@@ -76,6 +76,7 @@ std::vector<Assignment> published(std::initializer_list<Assignment> sizes) {
     std::vector<Assignment> all{parameters::k(8),
                                 parameters::origin(Origin::world),
                                 parameters::residency(Residency::published),
+                                parameters::copies(TreeCopies::pair),
                                 parameters::broad(Broad::sphere_boxes),
                                 upload(QueueUpload::queues),
                                 refill(false),

@@ -72,6 +72,12 @@ enum class Conversion {
     parallel ///< as many threads as setting threads allows
 };
 
+/// Copies that the host makes of the trees in body pairs before a walk.
+enum class TreeCopies {
+    none, ///< none
+    pair  ///< two of both trees for each body pair, as the paper's code
+};
+
 /// Submission of a frame's commands to the device.
 enum class Submission {
     one, ///< together, if the device supports it and the last frame had the same commands

@@ -183,6 +183,13 @@ inline constexpr Setting<Conversion> convert{
     "",
     "residency=published: threads that convert bodies to the device's arrays and trees, and back: serial: "
     "one, as in the paper's tables; parallel: as many as setting threads allows, as its OpenMP"};
+inline constexpr Setting<TreeCopies> copies{
+    "copies",
+    TreeCopies::none,
+    {{"none", TreeCopies::none}, {"pair", TreeCopies::pair}},
+    "",
+    "residency=published: copies that the host makes of the trees in body pairs before a walk: pair: two of "
+    "both for each body pair, as the paper's code, also of trees that it has copied before"};
 inline constexpr Setting<Submission> submission{
     "submission",
     Submission::one,

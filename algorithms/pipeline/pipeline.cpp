@@ -73,8 +73,8 @@ std::vector<const Parameter*> pipeline_parameters(std::span<const Parameter* con
     all.insert(all.end(), {&parameters::builder, &parameters::contact_rule, &parameters::decision,
                            &parameters::broad, &parameters::self, &parameters::body_pair_capacity});
     if (published)
-        all.insert(all.end(), {&parameters::residency, &parameters::convert, &parameters::first_body_pair,
-                               &parameters::most_body_pairs});
+        all.insert(all.end(), {&parameters::residency, &parameters::convert, &parameters::copies,
+                               &parameters::first_body_pair, &parameters::most_body_pairs});
     all.insert(all.end(), {&parameters::submission, &parameters::output, &parameters::order,
                            &parameters::pair_layout, &parameters::group_size, &parameters::work_items,
                            &parameters::threads, &parameters::pair_capacity, &parameters::contact_capacity});

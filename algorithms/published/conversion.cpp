@@ -100,13 +100,4 @@ Converted Converter::convert(const Frame& frame, std::size_t node_bytes) {
     return converted;
 }
 
-Converted::Array<std::byte> Converter::copy(const Converted::Array<std::byte>& bytes) {
-    Converted::Array<std::byte> copied(bytes.size());
-    each(blocks_of(bytes.size()), [&](std::size_t part) {
-        const auto first = part * block;
-        std::memcpy(copied.data() + first, bytes.data() + first, std::min(block, bytes.size() - first));
-    });
-    return copied;
-}
-
 } // namespace tandem

@@ -52,11 +52,10 @@ public:
 
     /// `node_bytes`: size of the hierarchy's nodes.
     Converted convert(const Frame& frame, std::size_t node_bytes);
-    Converted::Array<std::byte> copy(const Converted::Array<std::byte>& bytes);
-
-private:
     /// Calls `part` with 0..count - 1, on several threads if the conversion is parallel.
     void each(std::size_t count, const std::function<void(std::size_t)>& part);
+
+private:
     void convert_body(const Frame& frame, std::uint32_t body, Converted& converted) const;
     template<class Real>
     void empty_nodes(Converted::Array<std::byte>& nodes, std::size_t bytes);

@@ -5,22 +5,20 @@
 
 namespace tandem {
 
-PublishedFrame::PublishedFrame(const Bodies& bodies, Hierarchy& hierarchy, LaunchShape shape,
-                               Conversion conversion, std::uint32_t threads)
+PublishedFrame::PublishedFrame(const Bodies& bodies, ChunkTrees& trees, LaunchShape shape,
+                               const Settings& settings)
     : bodies_(bodies),
-      hierarchy_(hierarchy),
+      trees_(trees),
       device_(bodies.device()),
-      converter_(bodies, conversion, threads),
-      group_size_(shape.group_size) {
+      converter_(bodies, settings[parameters::convert],
+                 static_cast<std::uint32_t>(settings[parameters::threads])),
+      copies_(settings[parameters::copies]),
+      group_size_(shape.group_size),
+      host_trees_(trees) {
     compile_kernel(device_, transform_kernel_, row_defines(bodies.geometry(), group_size_));
     local_vertices_ =
         device_.allocate(bodies.vertex_total() * 4 * real_bytes(bodies.geometry()), "local vertices");
     vertex_bodies_ = device_.allocate(bodies.vertex_total() * 4, "vertex bodies");
-}
-
-Converted PublishedFrame::convert(const Frame& frame) {
-    const HostWork work(device_, Stage::preprocess, "convert bodies");
-    return converter_.convert(frame, hierarchy_.nodes().bytes());
 }
 
 void PublishedFrame::upload(const Buffer& to, std::span<const std::byte> bytes) {
@@ -35,12 +33,12 @@ void PublishedFrame::download(const Buffer& from, std::span<std::byte> bytes) {
 
 /// Scenes without rigid bodies have no transform stage, because their vertices are already in world
 /// coordinates.
-void PublishedFrame::transform(Converted& converted) {
-    if (converted.rigid || bodies_.geometry().placement == Placement::exact)
-        upload(bodies_.poses(), converted.poses);
-    if (!converted.rigid) return;
-    upload(local_vertices_, std::span(converted.vertices));
-    upload(vertex_bodies_, std::as_bytes(std::span(converted.vertex_bodies)));
+void PublishedFrame::transform() {
+    if (converted_.rigid || bodies_.geometry().placement == Placement::exact)
+        upload(bodies_.poses(), converted_.poses);
+    if (!converted_.rigid) return;
+    upload(local_vertices_, std::span(converted_.vertices));
+    upload(vertex_bodies_, std::as_bytes(std::span(converted_.vertex_bodies)));
     {
         const StageScope scope(device_, Stage::transform);
         const auto count = static_cast<std::uint32_t>(bodies_.vertex_total());
@@ -52,38 +50,42 @@ void PublishedFrame::transform(Converted& converted) {
         const auto groups = (std::uint64_t{count} + group_size_ - 1) / group_size_;
         device_.launch(transform_kernel_, {groups, group_size_}, arguments);
     }
-    download(bodies_.vertices(), converted.vertices);
+    download(bodies_.vertices(), converted_.vertices);
 }
 
-void PublishedFrame::refit(const Frame& frame, Converted& converted) {
-    upload(hierarchy_.nodes(), std::span(converted.nodes));
-    hierarchy_.refit(frame, true);
-    download(hierarchy_.nodes(), converted.nodes);
-    // Two copies of all nodes: the release keeps its trees on the host and flattens them again for the
-    // traversal.
-    Converted::Array<std::byte> host_trees;
+void PublishedFrame::refit(const Frame& frame) {
+    upload(bodies_.vertices(), std::span(converted_.vertices));
+    upload(bodies_.tetrahedra(), std::as_bytes(std::span(converted_.tetrahedra)));
+    upload(bodies_.row_table(), bodies_.packed_rows());
+    upload(trees_.nodes(), std::span(converted_.nodes));
+    trees_.refit(frame, true);
+    download(trees_.nodes(), converted_.nodes);
+    const HostWork work(device_, Stage::postprocess, "store trees");
+    host_trees_.store(converted_.nodes, converter_);
+}
+
+void PublishedFrame::initialize(const Frame& frame) {
     {
-        const HostWork work(device_, Stage::postprocess, "store trees");
-        host_trees = converter_.copy(converted.nodes);
+        const HostWork work(device_, Stage::preprocess, "convert bodies");
+        converted_ = converter_.convert(frame, trees_.nodes().bytes());
+    }
+    transform();
+    refit(frame);
+}
+
+void PublishedFrame::prepare_walk(std::span<const BodyPair> pairs) {
+    if (copies_ == TreeCopies::pair) {
+        const HostWork work(device_, Stage::preprocess, "copy sub trees");
+        host_trees_.copy(pairs, converter_);
     }
     {
         const HostWork work(device_, Stage::preprocess, "flatten trees");
-        converted.nodes = converter_.copy(host_trees);
+        host_trees_.flatten(converted_.nodes, converter_);
     }
-    upload(hierarchy_.nodes(), std::span(converted.nodes));
-}
-
-/// Follows the order of the release: transform, refit, traversal, each with all its inputs uploaded again.
-void PublishedFrame::update(const Frame& frame) {
-    auto converted = convert(frame);
-    transform(converted);
-    upload(bodies_.vertices(), std::span(converted.vertices));
-    upload(bodies_.tetrahedra(), std::as_bytes(std::span(converted.tetrahedra)));
-    upload(bodies_.row_table(), bodies_.packed_rows());
-    refit(frame, converted);
-    upload(bodies_.tetrahedra(), std::as_bytes(std::span(converted.tetrahedra)));
-    upload(bodies_.boundary(), std::as_bytes(std::span(converted.boundary)));
-    upload(bodies_.vertices(), std::span(converted.vertices));
+    upload(trees_.nodes(), std::span(converted_.nodes));
+    upload(bodies_.tetrahedra(), std::as_bytes(std::span(converted_.tetrahedra)));
+    upload(bodies_.boundary(), std::as_bytes(std::span(converted_.boundary)));
+    upload(bodies_.vertices(), std::span(converted_.vertices));
 }
 
 } // namespace tandem

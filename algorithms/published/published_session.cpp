@@ -56,9 +56,8 @@ class PublishedSession final : public Session {
 public:
     PublishedSession(const Traversal& traversal, Device& device, const Scene& scene, Settings fitted)
         : pipeline_(traversal, device, scene, std::move(fitted)),
-          frame_(*pipeline_.bodies, *pipeline_.stages.hierarchy, pipeline_.shape,
-                 pipeline_.settings[parameters::convert],
-                 static_cast<std::uint32_t>(pipeline_.settings[parameters::threads])),
+          frame_(*pipeline_.bodies, dynamic_cast<ChunkTrees&>(*pipeline_.stages.hierarchy), pipeline_.shape,
+                 pipeline_.settings),
           devices_{&device} {}
 
 private:
@@ -129,15 +128,28 @@ FrameResult PublishedSession::run_whole() {
 }
 
 /// A frame that does not fit is walked in parts, as the release launches again with the rest of a full
-/// buffer. Each part gets its contacts before the next one is walked.
+/// buffer. Each part gets its contacts before the next one is walked. Phases have the release's names.
 FrameResult PublishedSession::do_run(const FrameInput& input,
                                      std::optional<std::span<const BodyPair>> body_pairs) {
-    frame_.update(input.frame);
+    {
+        const HostPhase phase(pipeline_.device, "initialization");
+        frame_.initialize(input.frame);
+    }
+    auto& pairs = *pipeline_.body_pairs;
+    std::vector<BodyPair> too_many; // for the device's memory
     try {
-        pipeline_.body_pairs->begin(input, body_pairs);
-        if (batches_ == 1) return run_whole();
+        pairs.begin(input, body_pairs);
     } catch (const OutOfMemory&) {
         batches_ = std::max<std::uint64_t>(batches_, 2);
+        too_many = body_pairs ? std::vector(body_pairs->begin(), body_pairs->end())
+                              : pairs.list(&input, pipeline_.status);
+    }
+    const HostPhase phase(pipeline_.device, "narrow phase");
+    frame_.prepare_walk(too_many.empty() ? pairs.on_host() : std::span<const BodyPair>(too_many));
+    try {
+        if (batches_ == 1) return run_whole();
+    } catch (const OutOfMemory&) {
+        batches_ = 2;
     }
     return run_in_batches(pipeline_, &input, body_pairs, batches_);
 }

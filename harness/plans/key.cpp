@@ -19,8 +19,9 @@ std::string models_of(const Cell& cell) {
 }
 
 /// Settings that came after the first records, with the values that these stand for.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 10> later_settings{
-    {{"first_body_pair", "0"},
+constexpr std::array<std::pair<std::string_view, std::string_view>, 11> later_settings{
+    {{"copies", "none"},
+     {"first_body_pair", "0"},
      {"most_body_pairs", "0"},
      {"margin", "0"},
      {"motion", "none"},

@@ -226,6 +226,12 @@ const Fields<Named<HostWorkSample>>& host_work_fields() {
     return fields;
 }
 
+const Fields<Named<PhaseSample>>& phase_fields() {
+    static const Fields<Named<PhaseSample>> fields{
+        {"host_ns", summary_type(), "nanoseconds, one sample a replay", [](auto& p) { return p.times(); }}};
+    return fields;
+}
+
 /// Null when a command has no device times.
 Json device_span_json(const Measurement& m) {
     for (const auto& replay : m.breakdowns)
@@ -279,6 +285,14 @@ Fields<CellRecord> time_fields() {
           [](auto& r) {
               return named_json(r.m, host_work_fields(), &InstrumentedReplay::host_work,
                                 &HostWorkSample::host_ns);
+          },
+          {.since = 4}},
+         {"phases",
+          map_of(phase_fields().type("one phase"), "^[a-z][a-z ]*$"),
+          "parts of frames of those replays that the paper's release times, by name, with all commands and "
+          "waits in them: 'initialization' and 'narrow phase' of cells with residency=published",
+          [](auto& r) {
+              return named_json(r.m, phase_fields(), &InstrumentedReplay::phases, &PhaseSample::host_ns);
           },
           {.since = 4}}});
 }

@@ -13,9 +13,11 @@ TANDEM_FIELDS(KernelFacts, entry, defines, compile_ms, registers, local_bytes, s
               max_group_size, occupancy)
 TANDEM_FIELDS(KernelSample, device_ns, launches, stage, groups, group_size, facts)
 TANDEM_FIELDS(HostWorkSample, host_ns, times, stage)
+TANDEM_FIELDS(PhaseSample, host_ns)
 TANDEM_FIELDS(DeviceWork, bodies, body_pairs, pairs, ns, exchange_ns, exchange_bytes, messages)
 TANDEM_FIELDS(TimedReplay, round, frame_ns, shared_ns, longest_ns, repartitions, rebuilds)
-TANDEM_FIELDS(InstrumentedReplay, round, frame_ns, span_ns, stages, by_device, kernels, host_work, clocks)
+TANDEM_FIELDS(InstrumentedReplay, round, frame_ns, span_ns, stages, by_device, kernels, host_work, phases,
+              clocks)
 TANDEM_FIELDS(ProcessorCondition, cores, quota, own, other_processes, governor, mhz, throttled, pressure)
 TANDEM_FIELDS(GpuCondition, sm_mhz, sm_limit_mhz, memory_mhz, memory_limit_mhz, temperature_c, power_w,
               power_limit_w, throttle, busy_percent, processes)

@@ -33,6 +33,7 @@ StageSample& StageSample::operator+=(const StageSample& other) {
 StageSamples by_stage(const Trace& trace) {
     StageSamples samples{};
     for (const auto& event : trace.events) {
+        if (event.command == Command::phase) continue;
         auto& sample = samples[static_cast<std::size_t>(event.stage)];
         sample.host_ns += event.host_ns;
         sample.device_ns += std::max<std::int64_t>(event.device_ns, 0);

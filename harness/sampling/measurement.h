@@ -51,6 +51,11 @@ struct HostWorkSample {
     Stage stage = Stage::preprocess; ///< whose times include it
 };
 
+/// Sum of one phase over a replay.
+struct PhaseSample {
+    std::int64_t host_ns = 0;
+};
+
 /// A sample: a replay that times only the whole span of each frame.
 struct TimedReplay {
     std::uint32_t round = 0;
@@ -77,6 +82,7 @@ struct InstrumentedReplay {
     std::vector<StageSamples> by_device = {};             ///< sums over the frames
     std::map<std::string, KernelSample> kernels = {};     ///< by entry point
     std::map<std::string, HostWorkSample> host_work = {}; ///< by name
+    std::map<std::string, PhaseSample> phases = {};       ///< by name
     std::vector<std::string> clocks = {};                 ///< by device: the clock of its times
 
     /// Sums over the frames.

@@ -18,7 +18,7 @@ std::int64_t device_span(const Trace& trace) {
     std::int64_t first = std::numeric_limits<std::int64_t>::max();
     std::int64_t last = -1;
     for (const auto& event : trace.events) {
-        if (event.command == Command::host_work || event.command == Command::wait) continue;
+        if (event.command >= Command::wait) continue; // a wait, or the host's own
         if (event.begin_ns < 0 || event.device_ns < 0) return -1;
         first = std::min(first, event.begin_ns);
         last = std::max(last, event.begin_ns + event.device_ns);
@@ -48,6 +48,11 @@ void add_host_work(const Trace& trace, std::map<std::string, HostWorkSample>& wo
         ++sum.times;
         sum.stage = event.stage;
     }
+}
+
+void add_phases(const Trace& trace, std::map<std::string, PhaseSample>& phases) {
+    for (const auto& event : trace.events)
+        if (event.command == Command::phase) phases[event.label].host_ns += event.host_ns;
 }
 
 /// Stage samples of a frame by device: this process's devices, or one device of each rank.
@@ -121,6 +126,7 @@ InstrumentedReplay Replays::instrumented() {
         for (const auto& trace : traces) {
             add_kernels(trace, replay.kernels);
             add_host_work(trace, replay.host_work);
+            add_phases(trace, replay.phases);
             const auto own_span = device_span(trace);
             span = span < 0 || own_span < 0 ? -1 : std::max(span, own_span);
         }

@@ -19,6 +19,7 @@ using SettingValues = std::pair<std::string, std::vector<std::string>>;
 
 const std::vector<SettingValues> shared_settings{{"residency", {"resident", "published"}},
                                                  {"convert", {"serial", "parallel"}},
+                                                 {"copies", {"none", "pair"}},
                                                  {"work_items", {"64", "2048"}},
                                                  {"broad", {"sphere", "device"}},
                                                  {"self", {"off", "on", "deformable"}},
@@ -43,7 +44,7 @@ const std::vector<SettingValues> settings_of_single_algorithms{
     {"most_seeds", {"1", "256", "16384"}},
     {"root_test", {"yes", "no"}},
     {"schedule", {"group", "item"}},
-    {"descent", {"larger", "both"}},
+    {"descent", {"both", "larger", "unlike"}},
     {"groups", {"8", "13"}},
     {"local_queue", {"4", "200"}},
     {"initial_items", {"1", "0"}},
@@ -253,8 +254,8 @@ TEST_P(Conformance, EveryPreset) {
     for (const auto* traversal : algorithms()) {
         for (const auto& p : traversal->presets()) {
             auto given = p.texts();
-            if (declares(*traversal, "queue_bytes"))
-                given["queue_bytes"] = "1048576"; // 64 MiB a batch would only cost time
+            if (declares(*traversal, "queue_capacity"))
+                given["queue_capacity"] = "4096"; // 64 MiB a batch would only cost time
             std::uint64_t pairs = 0;
             std::uint64_t contacts = 0;
             expect_right(on, *traversal, scene, given, pairs, contacts);

@@ -75,7 +75,7 @@ TEST_P(Skipping, KeepsAllOtherPairsWithEveryPreset) {
     for (const auto* traversal : algorithms())
         for (const auto& preset : traversal->presets()) {
             SettingTexts given{{"contact_rule", "none"}};
-            if (traversal->name() == "gproximity") given["queue_bytes"] = "1048576";
+            if (traversal->name() == "gproximity") given["queue_capacity"] = "4096";
             expect_other_pairs(*traversal, preset, given, scene);
         }
 }
@@ -167,13 +167,15 @@ TEST_P(Skipping, NodesBoundUnskippedTetrahedraOnly) {
                 SCOPED_TRACE(fmt::format("{} cells, {} leaves", cells, leaves));
                 PreparedTrees on_device(on, scene, {.k = 18}, leaves, on.info().max_group_size == 1 ? 1 : 64,
                                         sharing);
-                PublishedFrame published(on_device.bodies, on_device.trees,
-                                         {on_device.trees.group_size(), 1});
+                PublishedFrame published(on_device.bodies, on_device.trees, {on_device.trees.group_size(), 1},
+                                         resolved(algorithm("chunked"), {}));
                 for (const auto& frame : frames_of(scene)) {
-                    if (sharing == Bodies::Sharing::none)
-                        published.update(frame);
-                    else
+                    if (sharing == Bodies::Sharing::none) {
+                        published.initialize(frame);
+                        published.prepare_walk({});
+                    } else {
                         on_device.update(frame);
+                    }
                     std::size_t count = 0;
                     for (const auto& body : frame.skipped) count += body.size();
                     EXPECT_EQ(check_nodes<float>(scene, frame, on_device), count);

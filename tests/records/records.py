@@ -97,7 +97,7 @@ class Records(Case):
         out = self.work / "host-work.jsonl"
         self.output(
             f"run {self.twice} --device host --preset published --set k=8 "
-            f"--repeat 2 --set queue_bytes=4096 --truth none --out {out}"
+            f"--repeat 2 --set queue_capacity=4096 --truth none --out {out}"
         )
         for record, name, times in zip(
             sorted(self.records(out), key=lambda r: r["algorithm"]), ("make seeds", "queue array"), (1, 1)
@@ -112,6 +112,12 @@ class Records(Case):
                 for i in range(2)
             ]
             self.assertEqual(within, record["stages"]["preprocess"]["host_ns"]["samples"])
+            phases = {name: own["host_ns"]["samples"] for name, own in record["phases"].items()}
+            self.assertEqual(set(phases), {"initialization", "narrow phase"})
+            for i, (first, then) in enumerate(zip(phases["initialization"], phases["narrow phase"])):
+                self.assertGreater(first, work["convert bodies"]["host_ns"]["samples"][i])
+                self.assertGreater(then, work["copy sub trees"]["host_ns"]["samples"][i])
+                self.assertLess(first + then, record["breakdown_ns"]["samples"][i])
 
     def test_samples_until_the_stopping_criterion(self):
         out = self.work / "suffice.jsonl"

@@ -12,11 +12,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-enum Lane { calls = 1, host_work, waits, stages, kernels, transfers };
+enum Lane { calls = 1, host_work, waits, stages, kernels, transfers, phases };
 constexpr std::pair<Lane, const char*> lane_names[] = {
     {calls, "host: calls"},     {host_work, "host: own work"}, {waits, "host: waits"},
-    {stages, "device: stages"}, {kernels, "device: kernels"},  {transfers, "device: transfers"}};
-constexpr const char* command_names[] = {"launch", "upload", "download", "clear", "wait", "host work"};
+    {stages, "device: stages"}, {kernels, "device: kernels"},  {transfers, "device: transfers"},
+    {phases, "host: phases"}};
+constexpr const char* command_names[] = {"launch", "upload", "download", "clear", "wait"};
 
 /// Event clocks have a resolution of half a microsecond, so an overlap of up to this length is a rounding
 /// error.
@@ -43,11 +44,12 @@ Offset offset_of(const Trace& trace) {
 }
 
 Json arguments_of(const Event& event) {
-    Json json{{"stage", stage_names[static_cast<std::size_t>(event.stage)]}};
+    Json json = Json::object();
+    if (event.command != Command::phase) json["stage"] = stage_names[static_cast<std::size_t>(event.stage)];
     if (event.command == Command::launch) {
         json["groups"] = event.groups;
         json["group_size"] = event.group_size;
-    } else if (event.command != Command::wait && event.command != Command::host_work) {
+    } else if (event.command < Command::wait) {
         json["bytes"] = event.bytes;
     }
     return json;
@@ -70,7 +72,7 @@ private:
     Json& events_;
     int process_;
     std::int64_t zero_;
-    std::int64_t ends_[transfers + 1] = {};
+    std::int64_t ends_[phases + 1] = {};
 };
 
 void Writer::name(const DeviceInfo& info) const {
@@ -111,10 +113,13 @@ void Writer::add(Lane lane, const std::string& name, std::int64_t begin, std::in
 }
 
 void Writer::calls_of(const Event& event) {
+    if (event.command > Command::wait) {
+        const auto lane = event.command == Command::phase ? phases : host_work;
+        add(lane, event.label, event.host_begin_ns, event.host_ns, arguments_of(event));
+        return;
+    }
     const auto text = std::string(command_names[static_cast<std::size_t>(event.command)]);
-    const auto lane = event.command == Command::host_work ? host_work : calls;
-    add(lane, lane == host_work ? event.label : text + " " + event.label, event.host_begin_ns, event.host_ns,
-        arguments_of(event));
+    add(calls, text + " " + event.label, event.host_begin_ns, event.host_ns, arguments_of(event));
     if (event.blocked)
         add(waits, text + " " + event.label, event.host_begin_ns, event.host_ns, arguments_of(event));
 }

@@ -2,7 +2,7 @@
 // Bodies in the layout that the paper's code uploads in every frame: the same arrays on one thread and on
 // several.
 #include "algorithms/bodies/pack.h"
-#include "algorithms/published/conversion.h"
+#include "algorithms/published/host_trees.h"
 #include "tests/support/cells.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
@@ -86,10 +86,36 @@ TEST(PublishedConversion, OneThreadAndSeveralMakeTheSameArrays) {
                 expect_bodies<double>(bodies, frame, converted, node_bytes);
             else
                 expect_bodies<float>(bodies, frame, converted, node_bytes);
-            auto marked = converted.nodes;
-            for (std::size_t i = 0; i < marked.size(); ++i) marked[i] = static_cast<std::byte>(i * 31);
-            EXPECT_EQ(converter.copy(marked), marked);
         }
+    }
+}
+
+/// Nodes pass through the trees of the host unchanged, but for the slot before each chunk's root.
+TEST(PublishedConversion, TreesOfTheHostKeepAllNodes) {
+    auto& host = device("host");
+    const auto scene = mixed_scene();
+    const Bodies bodies(host, scene, Geometry{}, Bodies::Sharing::none);
+    const ChunkTrees trees(bodies, 4, 1);
+    std::size_t chunks = 0;
+    for (std::uint32_t body = 0; body < bodies.count(); ++body)
+        for (const auto& level : trees.levels(body)) chunks += level.chunks;
+    const std::vector<BodyPair> pairs{{0, 1}, {1, 5}, {1, 1}};
+    for (const auto conversion : {Conversion::serial, Conversion::parallel}) {
+        Converter converter(bodies, conversion, 0);
+        std::vector<std::byte> marked(trees.nodes().bytes()), flat(marked.size());
+        for (std::size_t i = 0; i < marked.size(); ++i) marked[i] = static_cast<std::byte>(1 + i % 251);
+        HostTrees own(trees);
+        own.store(marked, converter);
+        own.copy(pairs, converter);
+        own.flatten(flat, converter);
+        const auto node = marked.size() / trees.slots();
+        std::size_t unused = 0;
+        for (std::size_t slot = 0; slot < trees.slots(); ++slot) {
+            const bool is_equal = std::memcmp(&marked[slot * node], &flat[slot * node], node) == 0;
+            unused += is_equal ? 0 : 1;
+            EXPECT_TRUE(is_equal || flat[slot * node] == std::byte{0});
+        }
+        EXPECT_EQ(unused, chunks);
     }
 }
 
