@@ -54,6 +54,8 @@ struct Scene {
     std::function<Frame(std::size_t)> frame;  ///< frame(i) for i < frame_count; pure
     std::shared_ptr<const Dynamics> dynamics; ///< null: the motion is scripted, all frames are defined
     std::function<double(std::size_t)> time;  ///< time of frame i in s; null: frames have no times
+    /// The step of the simulation that frame i is of; null: no simulation was recorded.
+    std::function<std::uint64_t(std::size_t)> step{};
     std::string end;          ///< message for frames after the last of a recording; empty in other scenes
     std::uint64_t digest = 0; ///< digest of meshes, bodies and motion; equal on every machine
     MeshReading reading{};    ///< how its meshes were read and connected

@@ -88,6 +88,17 @@ Fields<CellRecord> run_fields() {
          {.column = "failure"}}};
 }
 
+Json steps_json(const CellRecord& r) {
+    if (!r.scene.step) return nullptr;
+    Json steps = Json::array();
+    bool are_numbers = true;
+    for (auto frame = r.range.first(); frame <= r.range.last(); ++frame) {
+        steps.push_back(r.scene.step(frame));
+        are_numbers &= steps.back() == frame;
+    }
+    return are_numbers ? Json() : steps;
+}
+
 /// What was measured.
 Fields<CellRecord> subject_fields() {
     return {{"algorithm",
@@ -119,6 +130,12 @@ Fields<CellRecord> subject_fields() {
              [](auto& r) {
                  return frames_fields().write({r.range.first(), r.range.last()});
              }},
+            {"steps",
+             nullable(array_of(count())),
+             "the steps of the simulation that these frames are of, in a recording whose frames are not "
+             "numbered by their steps; else null",
+             steps_json,
+             {.since = 4}},
             {"devices", array_of(device_fields().type("one device")).with("minItems", 1),
              "devices the cell ran on", devices_json},
             {"ranks",

@@ -43,6 +43,13 @@ RecordedFrame Recording::read(std::size_t number, const std::vector<Pose>& fixed
     return recording::decode(header_, bytes, fixed, fmt::format("{}: frame {}", path(), number));
 }
 
+/// Reads only the step, with which the frame begins.
+std::uint64_t Recording::step(std::size_t number) const {
+    check(number);
+    const auto bytes = file_.read(offset(number), 8);
+    return read::Cursor(bytes, path()).get<std::uint64_t>("step");
+}
+
 /// Reads only the time, which is at byte 8 of the frame.
 double Recording::time(std::size_t number) const {
     check(number);

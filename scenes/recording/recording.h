@@ -21,7 +21,9 @@ public:
     /// Frame `number`. Fixed bodies get their poses from `fixed`, which has one pose a body. Throws
     /// InputError when the frame does not exist, is truncated, or does not match its checksum.
     RecordedFrame read(std::size_t number, const std::vector<Pose>& fixed) const;
-    /// The time of a frame in s, and its stored checksum; throw InputError when the frame does not exist.
+    /// The step of the simulation that a frame is of, its time in s, and its stored checksum; throw
+    /// InputError when the frame does not exist.
+    std::uint64_t step(std::size_t number) const;
     double time(std::size_t number) const;
     std::uint32_t stored_checksum(std::size_t number) const;
     /// True when the frame's bytes match its checksum.

@@ -120,6 +120,7 @@ Scene load_recording(const std::string& path, const MeshReading& reading) {
     scene.dynamics = nullptr;
     scene.end = recording->end();
     scene.time = [recording](std::size_t i) { return recording->time(i); };
+    scene.step = [recording](std::size_t i) { return recording->step(i); };
     scene.frame = [recording, fixed = scene.frame(0).poses](std::size_t i) {
         return recording->read(i, fixed).frame;
     };

@@ -23,9 +23,9 @@ def sealed(data, start=0):
     return data + struct.pack("<I", zlib.crc32(data, start))
 
 
-def recording(key, digest, kinds, frames, version=1):
+def recording(key, digest, kinds, frames, version=1, stride=1):
     """The bytes of a recording of rigid (0) and fixed (1) bodies; frames are (time, [pose of each rigid
-    body])."""
+    body]). stride: steps from frame to frame."""
     text = key.encode()
     header = b"\x89TDMFR\r\n" + struct.pack(
         "<IIQdII", version, 44 + len(text) + 8 * len(kinds), digest, 0.01, len(kinds), len(text)
@@ -33,7 +33,9 @@ def recording(key, digest, kinds, frames, version=1):
     header += text + b"".join(struct.pack("<II", kind, 0) for kind in kinds)
     parts = [sealed(header)]
     for number, (time, poses) in enumerate(frames):
-        body = struct.pack("<Qd", number, time) + b"".join(struct.pack("<7f", *pose) for pose in poses)
+        body = struct.pack("<Qd", stride * number, time) + b"".join(
+            struct.pack("<7f", *pose) for pose in poses
+        )
         parts.append(sealed(body, zlib.crc32(struct.pack("<Q", number))))
     return b"".join(parts)
 
@@ -91,6 +93,15 @@ class Recordings(Case):
         self.assertEqual(len(record["work"]["candidate_pairs"]), 4)
         self.assertEqual(record["work"]["candidate_pairs"][1], self.pairs_of_poses(self.frames[3][1]))
         self.output("check", file, "--frames", "3", "--device", "host", "--algorithm", "chunked")
+
+    def test_records_have_the_steps_of_some_frames_of_a_simulation(self):
+        """Null where frames have the numbers of their steps."""
+        out = self.work / "steps.jsonl"
+        some = recording(self.key, self.digest, [0] * 4, self.frames, stride=10)
+        for name, data in (("whole.frames", self.whole), ("some.frames", some)):
+            file = self.file(name, data)
+            self.output(f"run {file} --frames 2:4 --device host --repeat 1 --algorithm tiled --out {out}")
+        self.assertEqual([record["steps"] for record in self.records(out)], [None, [20, 30, 40]])
 
     def test_damage_is_reported(self):
         cut = self.file("cut.frames", self.whole[:-1])
