@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: MIT
 # test: cost=10
 """The kit of pages (python/tandem/pages): no text becomes markup, each page has the frame, the policy and the labels
-that it needs, and pages without scripts are whole in Chromium."""
+that it needs, groups work with and without a script, and pages that need no scripts are whole in Chromium."""
 
 import re
 
-from tests.program import SOURCE
+from tests.paper.drawn import FIGURES, page_of_committed
 from tests.report.case import ReportCase, Shown
 from tests.script_case import called, loaded
 
 from tandem.pages import frame, markup
+from tandem.pages.groups import Group, groups, groups_script
 from tandem.pages.tables import Column, Row, number_text, table
 
 TEXT = "<img src=x onerror='run()'> & \"</script>\"\x1b[2J"
@@ -26,7 +27,7 @@ class Kit(ReportCase):
             notes=[TEXT],
             csv=TEXT,
         )
-        figure = frame.figure("b", TEXT, TEXT, TEXT, TEXT, TEXT)
+        figure = frame.figure("b", TEXT, TEXT, TEXT, TEXT)
         page = frame.html_of(
             frame.Page(TEXT, [section, frame.Section("c", "c", [shown, figure])], TEXT, TEXT)
         )
@@ -48,6 +49,15 @@ class Kit(ReportCase):
         self.assertEqual(policy(), least)
         self.assertEqual(policy(has_images=True), f"{least}; img-src 'self'")
         self.assertEqual(policy(scripts=["1"]), f"{least}; script-src 'unsafe-inline'; img-src data: blob:")
+        self.assertEqual(
+            policy(scripts=["1"], has_images=True), f"{least}; script-src 'unsafe-inline'; img-src 'self'"
+        )
+
+    def test_only_pages_that_need_scripts_say_so(self):
+        without = lambda **how: "<noscript>" in frame.html_of(frame.Page("t", **how))
+        self.assertEqual(
+            [without(), without(scripts=["1"]), without(scripts=["1"], without="")], [False, True, False]
+        )
 
     def test_numbers_are_those_of_scripts(self):
         values = [
@@ -87,19 +97,75 @@ class Kit(ReportCase):
         ):
             self.assertIn(part, text)
 
-    def test_pages_without_scripts(self):
+    def test_wide_tables_stay_tables(self):
+        """On a phone, too, where the other tables become cards. Their first column stays in sight."""
+        columns = ["first", *(f"column {i}" for i in range(20))]
+        shown = table("t", columns, [["here", *range(20)]], is_wide=True)
+        self.assertNotIn("data-label", shown)
+        page = self.work / "wide.html"
+        page.write_text(
+            frame.html_of(frame.Page("t", [frame.Section("a", "a", [shown, table("u", columns, [["a"]])])]))
+        )
+        self.browser.size(390, 844, mobile=True)
+        self.opened(page)
+        display = "[...document.querySelectorAll('td:first-child')].map(one => getComputedStyle(one).display)"
+        self.assertEqual(self.browser.run(display), ["table-cell", "block"])
+        self.browser.run("document.querySelector('.scrolls').scrollLeft = 500")
+        self.assertEqual(self.browser.run("document.querySelector('.scrolls').scrollLeft"), 500)
+        place = "document.querySelector('td').getBoundingClientRect().left"
+        self.assertGreaterEqual(self.browser.run(place), 0)
+        self.assertEqual(self.browser.run("document.documentElement.scrollWidth"), 390)
+
+    def grouped(self, scripts):
+        parts = [Group(name, name, 1, markup.element("p", name, id=f"in-{name}")) for name in ("one", "two")]
+        content = [groups("Choice", "part", parts), markup.link("#in-two", "to two")]
+        page = self.work / "groups.html"
+        made = frame.Page("t", [frame.Section("part", "part", content)], scripts=scripts, without="")
+        page.write_text(frame.html_of(made))
+        self.opened(page)
+
+    def test_groups_are_links_without_scripts(self):
+        """A link opens the group that it leads into."""
+        self.grouped([])
+        opened = "[...document.querySelectorAll('details')].map(one => one.open)"
+        self.assertEqual(self.browser.run(opened), [False, False])
+        self.assertEqual(self.texts(".groups a"), ["all 2", "one 1", "two 1"])
+        self.browser.run("document.querySelector('[href=\"#two\"]').click()")
+        self.browser.until(f"{opened}[1]")
+        self.assertEqual(self.browser.run(opened), [False, True])
+
+    def test_groups_are_chosen_by_keys(self):
+        """With the script, a choice shows one group and opens it; a link into another one shows all again."""
+        self.grouped([groups_script()])
+        state = "[...document.querySelectorAll('details')].map(one => [one.hidden, one.open])"
+        pressed = "[...document.querySelectorAll('.groups button')].map(one => one.ariaPressed)"
+        self.assertEqual(self.texts(".groups button"), ["all 2", "one 1", "two 1"])
+        self.assertEqual(self.browser.run(pressed), ["true", "false", "false"])
+        self.browser.run("document.querySelectorAll('.groups button')[1].focus()")
+        self.browser.key(" ")
+        self.assertEqual(self.browser.run(state), [[False, True], [True, False]])
+        self.assertEqual(self.browser.run(pressed), ["false", "true", "false"])
+        self.browser.run("document.querySelector('[href=\"#in-two\"]').click()")
+        self.browser.until(f"{state}[1][0] === false")
+        self.assertEqual(self.browser.run(state), [[False, True], [False, True]])
+        self.assertEqual(self.browser.run(pressed), ["true", "false", "false"])
+
+    def test_pages_that_need_no_scripts(self):
         """They have all their images, fit a phone, and their navigation leads to what there is."""
         results = self.work / "results.html"
         self.assertEqual(called(loaded("results-page"), "-o", results)[0], 0)
-        paper = SOURCE / "results/h200/paper/index.html"
-        for path, images in ((results, 0), (paper, 14)):
+        paper = page_of_committed(self.work / "paper")
+        self.assertLess(paper.stat().st_size, 300e3)
+        for path, images, scripts in ((results, 0, 0), (paper, FIGURES, 1)):
             self.browser.size(390, 844, mobile=True)
             self.browser.open(path)
             self.assertEqual(self.browser.problems([f"{paper.parent.as_uri()}/figure"]), [])
-            self.assertEqual(
-                self.browser.run("[...document.images].map(one => one.naturalWidth > 0)"), [True] * images
-            )
+            widths = self.browser.run("[...document.images].map(one => [one.naturalWidth, one.width])")
+            self.assertEqual([width > 500 and width == shown for width, shown in widths], [True] * images)
             self.assertEqual(self.browser.run("document.documentElement.scrollWidth"), 390)
             lost = "[...document.querySelectorAll('[href^=\"#\"]')].filter(one => !document.querySelector(one.hash)).length"
-            self.assertEqual((self.browser.run(lost), self.browser.run("document.scripts.length")), (0, 0))
+            self.assertEqual(
+                (self.browser.run(lost), self.browser.run("document.scripts.length")), (0, scripts)
+            )
             self.assertEqual(self.text(".skip"), "Skip to the content")
+        self.assertLess(self.browser.run("document.documentElement.scrollHeight"), 20000)

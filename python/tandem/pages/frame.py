@@ -23,24 +23,31 @@ class Section:
 
 @dataclasses.dataclass
 class Page:
-    """lead: what stands below the title. scripts: texts of scripts; a page without them has none. data: {id:
-    JSON text} for scripts. has_images: the page shows image files beside it. style: rules of this page only."""
+    """lead: what stands below the title. scripts: texts of scripts; a page without them has none. without: what
+    readers without scripts are told. data: {id: JSON text} for scripts. has_images: the page shows image files
+    beside it. style: rules of this page only."""
 
     title: str
     sections: list = dataclasses.field(default_factory=list)
     lead: object = ""
     footer: object = ""
     scripts: list = dataclasses.field(default_factory=list)
+    without: str = "This page needs JavaScript for its charts and the scene. It is off in this browser."
     data: dict = dataclasses.field(default_factory=dict)
     has_images: bool = False
     style: str = ""
 
 
-def figure(anchor, title, image, alt, caption, csv):
-    """An image file with a heading and a caption, which ends with a link to its numbers."""
-    shown = element("img", src=image, alt=alt)
+def figure(anchor, label, title, image, csv):
+    """An image file with a heading above and a link to its numbers below. On a narrow screen it scrolls in a box of
+    its own, so that its texts stay readable."""
+    shown = element("img", src=image, alt=title)
     return element(
-        "figure", element("h3", title), shown, element("figcaption", caption, " ", link(csv)), id=anchor
+        "figure",
+        element("h3", f"{label}: {title}"),
+        element("div", shown, class_="scrolls", tabindex=0, role="group", aria_label=label),
+        element("figcaption", link(csv)),
+        id=anchor,
     )
 
 
@@ -58,8 +65,10 @@ def _section(part):
 
 def _policy(page):
     """The Content-Security-Policy: no network, and scripts only if the page has some."""
-    scripts = "; script-src 'unsafe-inline'; img-src data: blob:" if page.scripts else ""
-    return f"default-src 'none'; style-src 'unsafe-inline'{scripts}{'; img-src ' + chr(39) + 'self' + chr(39) if page.has_images else ''}"
+    images = "'self'" if page.has_images else "data: blob:" if page.scripts else ""
+    parts = ["default-src 'none'", "style-src 'unsafe-inline'"]
+    parts += ["script-src 'unsafe-inline'"] if page.scripts else []
+    return "; ".join([*parts, f"img-src {images}"] if images else parts)
 
 
 def _links(sections):
@@ -70,7 +79,6 @@ def _links(sections):
 
 def html_of(page):
     """The text of a page, which needs no network and no other file but its images."""
-    without = "This page needs JavaScript for its charts and the scene. It is off in this browser."
     elements = [data_element(*item) for item in page.data.items()]
     elements += map(script_element, page.scripts)
     return f"""<!DOCTYPE html>
@@ -92,7 +100,7 @@ def html_of(page):
 <nav aria-label="Parts of this page">{markup([*_links(page.sections)])}</nav>
 </header>
 <main id="main" tabindex="-1">
-{element("noscript", element("p", without)) if page.scripts else ""}
+{element("noscript", element("p", page.without)) if page.scripts and page.without else ""}
 {Html(chr(10)).join(map(_section, page.sections))}
 </main>
 <footer>{markup(page.footer)}</footer>

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Tables of pages. On a narrow screen each row becomes a card, with the headings beside its values."""
+"""Tables of pages. On a narrow screen each row becomes a card, with the headings beside its values; a wide table
+scrolls instead."""
 
 import dataclasses
 
@@ -38,16 +39,16 @@ def number_text(value):
     return f"{value:,.0f}" if size >= 1000 else f"{value:.4g}"
 
 
-def _value(column, value):
+def _value(column, value, is_wide):
     is_number = column.is_number or isinstance(value, (int, float))
     style = " ".join(filter(None, ("number" if is_number else "", column.style)))
     text = number_text(value) if isinstance(value, (int, float)) else value
-    return element("td", breakable(text), class_=style, data_label=column.name)
+    return element("td", breakable(text), class_=style, data_label=None if is_wide else column.name)
 
 
-def _row(columns, row):
+def _row(columns, row, is_wide):
     row = row if isinstance(row, Row) else Row(row)
-    values = [_value(column, value) for column, value in zip(columns, row.values)]
+    values = [_value(column, value, is_wide) for column, value in zip(columns, row.values)]
     more = None
     if row.more is not None:
         more = element("tr", element("td", row.more, colspan=len(columns)), class_="more")
@@ -59,12 +60,13 @@ def _head(column):
     return element("th", breakable(column.name), scope="col", class_=" ".join(filter(None, styles)))
 
 
-def table(label, columns, rows, *, heading=True, notes=(), csv="", anchor="", sorts=False):
+def table(label, columns, rows, *, heading=True, notes=(), csv="", anchor="", sorts=False, is_wide=False):
     """A table in a part of the page. `label`: what it is, also its heading if `heading`. `columns`: Columns,
     or names of columns of texts. `rows`: Rows, or lists of values. `csv`: file with the same numbers.
-    `sorts`: page.js lets readers sort and filter it; each row is a body of its own for this."""
+    `sorts`: page.js lets readers sort and filter it; each row is a body of its own for this. `is_wide`: on a narrow
+    screen it stays a table, whose first column stays in sight while the others scroll."""
     columns = [column if isinstance(column, Column) else Column(column) for column in columns]
-    shown = [_row(columns, row) for row in rows]
+    shown = [_row(columns, row, is_wide) for row in rows]
     return element(
         "section",
         element("h3", label) if heading else None,
@@ -75,7 +77,7 @@ def table(label, columns, rows, *, heading=True, notes=(), csv="", anchor="", so
                 "table",
                 element("thead", element("tr", [_head(column) for column in columns])),
                 [element("tbody", row) for row in shown] if sorts else element("tbody", shown),
-                class_="sorts" if sorts else None,
+                class_=" ".join(filter(None, ("sorts" if sorts else "", "wide" if is_wide else ""))),
             ),
             class_="scrolls",
             tabindex=0,

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Common parts of the figures: size, colours, titles that state results, and the CSV file beside each."""
+"""Common parts of the figures: size, colours, and the CSV file beside each. A title says what a figure shows; it stands
+above the image on the page, and in the image only as its name."""
 
 import csv
 import dataclasses
@@ -28,7 +29,7 @@ from ..files import save_svg
 from ..plots import COLOURS, INK, PALE, WINNER
 from .tables import short
 
-WIDTH = 6.6  # inches: readable on a phone in portrait format, two thirds of a printed page
+WIDTH = 6.6  # inches: two thirds of a printed page; the page shows it no smaller, so that texts stay readable
 STAGES = "transform refit broad seed traverse balance contact preprocess postprocess read write".split()
 COLOUR_OF = dict(
     zip(
@@ -48,6 +49,7 @@ COLOUR_OF = dict(
         ),
     )
 )
+MARKERS = dict(zip(STAGES, "osPxv^D<>pX"))
 COLOUR_OF |= {"solve": "#333333", "assemble": "#aaaaaa", "reduce": "#8c6d31", "move": "#dddddd"}
 
 
@@ -62,11 +64,17 @@ class Figure:
 class Plot:
     """A figure with several panels under construction, with the rows of its CSV file."""
 
-    def __init__(self, number, panels=1, height=3.2, columns=1):
+    def __init__(self, number, panels=1, height=3.2, columns=1, heights=None):
+        """heights: of each row of panels, if they differ."""
         self.number = number
-        rows = -(-panels // columns)
+        heights = heights or [height] * -(-panels // columns)
         self.figure, axes = plt.subplots(
-            rows, columns, figsize=(WIDTH, height * rows), layout="constrained", squeeze=False
+            len(heights),
+            columns,
+            figsize=(WIDTH, sum(heights)),
+            height_ratios=heights,
+            layout="constrained",
+            squeeze=False,
         )
         self.axes = list(axes.flat)
         for spare in self.axes[panels:]:
@@ -74,14 +82,6 @@ class Plot:
         self.rows = []
 
     def save(self, folder, title):
-        self.figure.suptitle(
-            "\n".join(textwrap.wrap(title, 70)),
-            x=0.01,
-            ha="left",
-            fontsize=10.5,
-            fontweight="bold",
-            color=INK,
-        )
         save_svg(self.figure, folder / f"figure{self.number}.svg", metadata={"Date": None, "Title": title})
         plt.close(self.figure)
         write_rows(folder, self.number, self.rows)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Figures 7, 8 and 12 to 14 from our records of frames, with the paper's numbers of Table 5 beside them."""
 
+import statistics
+
 import numpy
 
 from . import sweep_figures
@@ -8,6 +10,7 @@ from .comparison_tables import PARTS
 from .drawing import (
     COLOUR_OF,
     COLOURS,
+    MARKERS,
     PALE,
     STAGES,
     WINNER,
@@ -19,7 +22,8 @@ from .drawing import (
 )
 from .folder import SCENES, STEPS_OF_PAPER, STEPS_OF_TABLES, number, paper_table
 from .methods import found, name_of
-from .tables import written
+from .quantities import batches_of
+from .tables import simulations
 
 MAX_COSTS = 6  # as in the paper
 GPU = "K40c"  # of the paper's devices, the one whose launch geometry preset published has
@@ -44,19 +48,51 @@ def of_paper(algorithm):
     }
 
 
-def _figure7_rows(cases):
-    """(label, {stage: seconds a frame}, launches a frame, records) of our cells and of the paper, scene by
+def _batches(case):
+    """Batches of each frame of gProximity; empty if unknown."""
+    found = {
+        frame: batches_of(cell, (frame, frame))
+        for cell in case.cells
+        for frame in range(cell.first_frame, cell.last_frame + 1)
+    }
+    return found if all(found.values()) else {}
+
+
+def _upload_of_array(folder, cases):
+    """(seconds of the upload of the whole queue array that the release allocates on this device, its records), to add
+    to each batch of the cases; None if the upload or the batches are unknown."""
+    cells = [
+        case
+        for step in ("array", "array-again")
+        for case in folder.cases(step)
+        if case.settings.get("queue_bytes") == "device"
+    ]
+    if not cells or not all(map(_batches, [*cases, *cells])):
+        return None
+    seconds = statistics.median(case.stage("write") / case.batches for case in cells)
+    return seconds, cells[0].locations[0]
+
+
+def _array_text(upload):
+    return "its whole queue array, composed" if upload else "a bounded queue array"
+
+
+def _own_row(scene, case, upload):
+    """A row of _figure7_rows() of ours: with the upload of the whole array for each batch, if it is known."""
+    seconds = {stage: case.stage(stage) / case.frames for stage in STAGES}
+    records = case.locations[0]
+    if upload:
+        seconds["write"] += upload[0] * sum(_batches(case).values()) / case.frames
+        records += f" {upload[1]}"
+    return f"{scene}, ours", seconds, case.release_launches / case.frames, records
+
+
+def _figure7_rows(cases, upload):
+    """(label, {stage: seconds per frame}, launches per frame, records) of our cells and of the paper, scene by
     scene."""
     theirs, rows = of_paper("gproximity"), []
     for scene, case in cases.items():
-        rows.append(
-            (
-                f"{scene}, ours",
-                {stage: case.stage(stage) / case.frames for stage in STAGES},
-                case.release_launches / case.frames,
-                case.locations[0],
-            )
-        )
+        rows.append(_own_row(scene, case, upload))
         if scene in theirs:
             rows.append((f"{scene}, paper's {GPU}", *theirs[scene], "results/paper/table5.csv"))
     return rows
@@ -74,9 +110,17 @@ def _draw_costs(ax, percents):
     legend_above(ax, 6)
 
 
+def _bounded(cases):
+    """The sizes of the queue arrays of our cells in words."""
+    sizes = dict.fromkeys(case.settings.get("queue_bytes", "") for case in cases)
+    return ", ".join(f"{int(size) / 2**20:g} MiB" if size.isdigit() else size for size in sizes)
+
+
 def figure7(folder):
     """The six largest costs of gProximity in percent, and its launches."""
-    rows = _figure7_rows(published(folder, "gproximity"))
+    cases = published(folder, "gproximity")
+    upload = _upload_of_array(folder, cases.values())
+    rows = _figure7_rows(cases, upload)
     if not rows:
         return missing(
             folder.path, 7, "gProximity's bottlenecks", "no cell of gProximity published has completed"
@@ -94,7 +138,7 @@ def figure7(folder):
         color=[PALE if "paper" in label else WINNER for label, *_ in rows],
         height=0.7,
     )
-    launches.set(xscale="log", xlabel="launches a frame, as the release counts")
+    launches.set(xscale="log", xlabel=f"launches per frame; ours with an array of {_bounded(cases.values())}")
     log_axis(launches.xaxis)
     for ax in plot.axes:
         ax.set_yticks(range(len(rows)), [label for label, *_ in rows], fontsize=8)
@@ -104,9 +148,9 @@ def figure7(folder):
             {
                 "scene": label,
                 "stage": stage,
-                "ms_a_frame": 1e3 * seconds.get(stage, 0),
+                "ms_per_frame": 1e3 * seconds.get(stage, 0),
                 "percent": percent[stage],
-                "launches_a_frame": count,
+                "launches_per_frame": count,
                 "records": records,
             }
             for stage in STAGES
@@ -116,16 +160,13 @@ def figure7(folder):
         for who in ("ours", "paper")
     }
     text = {who: f"{min(own):.0f} to {max(own):.0f} %" for who, own in spans.items() if own}
-    title = f"gProximity as published, with a bounded queue array: write takes {text['ours']} of its stages"
-    return plot.save(
-        folder.path,
-        title
-        + (f", and {text['paper']} on the paper's {GPU} with its whole array" if "paper" in text else ""),
-    )
+    title = f"gProximity as published, with {_array_text(upload)}: write takes {text['ours']} of its stages"
+    more = f", and {text['paper']} on the paper's {GPU}" if "paper" in text else ""
+    return plot.save(folder.path, title + more)
 
 
 def _draw_launches(plot, ax, case):
-    """Draws launches a frame of each range of frames."""
+    """Draws launches per frame of each range of frames."""
     counts = sorted(
         (cell.first_frame, cell.last_frame, cell.of_stages("launches") / cell.frames) for cell in case.cells
     )
@@ -137,12 +178,38 @@ def _draw_launches(plot, ax, case):
         color=WINNER,
     )
     plot.rows += [{"frame": first, "stage": "launches", "launches": count} for first, _, count in counts]
-    ax.set(ylabel="launches a frame", xlabel="frame")
+    ax.set(ylabel="launches per frame", xlabel=f"frame; with an array of {_bounded([case])}")
     ax.set_ylim(bottom=0)
 
 
+def _stage_by_frame(case, stage, upload):
+    """(frames, milliseconds) of a stage; write with the upload of the whole array for each batch, if it is known."""
+    rows = case.per_frame(stage, "device_ns" if case.stage(stage, "device_ns") else "host_ns")
+    frames, values = [frame for frame, _ in rows], numpy.array([1e3 * seconds for _, seconds in rows])
+    if upload and stage == "write":
+        batches = _batches(case)
+        values += [1e3 * upload[0] * batches[frame] for frame in frames]
+    return frames, values
+
+
+def _draw_means(ax, means):
+    """Marks the paper's means at the right of the axes, each with its name beside it, which keeps its distance from
+    the others."""
+    low, high = ax.get_ylim()
+    gap, least = (high / low) ** 0.06, low
+    for stage, ms in sorted(means.items(), key=lambda item: item[1]):
+        style = {"color": COLOUR_OF[stage], "markersize": 5, "fillstyle": "none", "clip_on": False}
+        ax.plot(1.02, ms, MARKERS[stage], transform=ax.get_yaxis_transform(), **style)
+        least = max(ms, least * gap)
+        line = {"arrowstyle": "-", "color": COLOUR_OF[stage], "linewidth": 0.8, "shrinkA": 1, "shrinkB": 3}
+        where = {"xycoords": ax.get_yaxis_transform(), "textcoords": ax.get_yaxis_transform(), "va": "center"}
+        ax.annotate(
+            stage, (1.02, ms), (1.06, least), arrowprops=line, annotation_clip=False, fontsize=8, **where
+        )
+
+
 def figure8(folder):
-    """Stages of gProximity over frames of the funnel; dotted: the paper's means."""
+    """Stages of gProximity over frames of the funnel; hollow marks: the paper's means."""
     case = published(folder, "gproximity").get("funnel")
     if case is None:
         return missing(
@@ -151,44 +218,44 @@ def figure8(folder):
             "gProximity over frames",
             "no cell of gProximity published on funnel has completed",
         )
-    plot = Plot(8, 2, 2.9)
+    plot, upload = Plot(8, 2, 2.9), _upload_of_array(folder, [case])
     times, launches = plot.axes
-    theirs, _ = of_paper("gproximity")["funnel"]
-    tops = {}
+    means = {stage: 1e3 * seconds for stage, seconds in of_paper("gproximity")["funnel"][0].items()}
+    sums = {}
     for stage in STAGES:
-        rows = case.per_frame(stage, "device_ns" if case.stage(stage, "device_ns") else "host_ns")
-        if not rows or max(value for _, value in rows) == 0:
+        frames, values = _stage_by_frame(case, stage, upload)
+        if not frames or max(values) == 0:
             continue
-        frames, values = zip(*rows)
-        values = 1e3 * numpy.array(values)
-        times.plot(frames, values, "o-", markersize=3, color=COLOUR_OF[stage], label=stage)
-        if theirs.get(stage):
-            times.axhline(1e3 * theirs[stage], color=COLOUR_OF[stage], linestyle=":", linewidth=1)
-        tops[stage] = values.sum()
+        times.plot(
+            frames,
+            values,
+            MARKERS[stage] + "-",
+            markersize=5,
+            color=COLOUR_OF[stage],
+            label=stage,
+            linewidth=1,
+        )
+        sums[stage] = values.sum()
         plot.rows += [
-            {
-                "frame": frame,
-                "stage": stage,
-                "ms": value,
-                "paper_ms": 1e3 * theirs[stage] if stage in theirs else None,
-            }
+            {"frame": frame, "stage": stage, "ms": value, "paper_ms": means.get(stage)}
             for frame, value in zip(frames, values)
         ]
     times.set_yscale("log")
     milliseconds(times)
     legend_above(times, 6)
     log_axis(times.yaxis)
+    _draw_means(times, {stage: ms for stage, ms in means.items() if ms and stage in sums})
     _draw_launches(plot, launches, case)
-    largest = max(tops, key=tops.get)
+    largest = max(sums, key=sums.get)
     return plot.save(
         folder.path,
-        f"gProximity as published, {case.scene}, bounded queue array: {largest} takes most, {100 * tops[largest] / sum(tops.values()):.0f} % of all stages "
-        f"(dotted: means of the paper's {GPU}, whole array, steps 20 to 121)",
+        f"gProximity as published, {case.scene}, with {_array_text(upload)}: {largest} takes {100 * sums[largest] / sum(sums.values()):.0f} % of all stages "
+        f"(hollow marks at the right: means of the paper's {GPU}, steps 20 to 121)",
     )
 
 
 def _launches(folder):
-    """{method: {scene: (launches a frame, records)}}, k = 8: as the release counts, or all kernels of a
+    """{method: {scene: (launches per frame, records)}}, k = 8: as the release counts, or all kernels of a
     method that it does not have."""
     rows = {}
     for scene in SCENES:
@@ -208,12 +275,12 @@ def _launches(folder):
 
 
 def figure12(folder):
-    simulations, methods = folder.simulations("sim-"), _launches(folder)
-    if not simulations and not methods:
+    runs, methods = simulations(folder), _launches(folder)
+    if not runs and not methods:
         return missing(folder.path, 12, "Launches", "nothing has completed")
     plot = Plot(12, 2, 3.1)
     curves, bars = plot.axes
-    for colour, run in zip(COLOURS, [run.first(STEPS_OF_PAPER) for run in simulations]):
+    for colour, run in zip(COLOURS, [run.first(STEPS_OF_PAPER) for run in runs]):
         launches = [sum(stage["launches"] for stage in step["stages"].values()) for step in run.steps]
         curves.plot(
             [step["step"] for step in run.steps],
@@ -242,26 +309,10 @@ def figure12(folder):
             for scene, (count, location) in counts.items()
         ]
     bars.set_xticks(range(len(SCENES)), SCENES)
-    bars.set(ylabel="launches a frame", yscale="log")
+    bars.set(ylabel="launches per frame", yscale="log")
     log_axis(bars.yaxis)
     legend_above(bars, 3)
-    largest = max(
-        (
-            (count, method, scene)
-            for method, counts in methods.items()
-            if "paper's " + GPU not in method
-            for scene, (count, _) in counts.items()
-        ),
-        default=None,
-    )
-    more = (
-        f"; the most are {written(float(round(largest[0])))} of {largest[1]} on {largest[2]}"
-        if largest
-        else ""
-    )
-    return plot.save(
-        folder.path, f"Launches of each step of our simulations, and of each method with k = 8{more}"
-    )
+    return plot.save(folder.path, "Launches of each step of our simulations, and of each method with k = 8")
 
 
 def all_of_frames(folder):

@@ -2,33 +2,29 @@
 """Writes index.html with the answer, the verdicts, figures and tables of a folder."""
 
 from ..pages.frame import Page, Section, figure, html_of
+from ..pages.groups import folded, groups_script
 from ..pages.markup import element, items, link, paragraphs
 from ..pages.tables import Column, Row, table
 from . import headline
+from .claim_groups import claim_groups, counted, errata, records_links
 from .methods import FOUR
-from .rules import AGREES, DIFFERS, NOT_SETTLED
+from .provenance import builds_of, cards_of, is_uniform, origins
 from .tables import written
 
-STYLE = "tr.ours { font-weight: 600; }\nfigure img { width: 60rem; }\n"
-MARKS = {AGREES: "good", DIFFERS: "bad", NOT_SETTLED: "open"}
-CLAIMS = (
-    "A value agrees or differs if its whole 95 % interval keeps or breaks the rule of its claim. It is not settled if the interval contains a "
-    "limit, or if there is one sample or only disturbed ones. It is untested if the same thing was not measured. Words in parentheses are ours."
-)
+STYLE = """tr.ours { font-weight: 600; }
+@media (min-width: 40rem) { figure img { width: 48rem; } }
+@media (min-width: 80rem) {
+  #figures { display: grid; grid-template-columns: 1fr 1fr; gap: 0 2rem; }
+  #figures > :not(figure) { grid-column: 1 / -1; }
+}
+"""
 METHODS = (
-    "Milliseconds a frame. In parentheses gProximity's time over that of the method, with its 95 % interval: "
-    "above 1 the method is faster."
+    "Milliseconds per frame; the fastest of a row is bold. In parentheses, with its 95 % interval, gProximity's time over that of the method: "
+    "above 1, the method is faster. The paper's schedule lets each work-item walk its own seeds; ours, grouped, has the same chunks, and "
+    "a work-group shares its walks."
 )
 METHODS_TITLE = "Four methods, everything on the device"
-
-
-def records_links(locations):
-    """Links to files of records: "records/cells-plates.jsonl:4" has the text cells-plates:4."""
-    links = []
-    for place in locations:
-        file, colon, line = place.partition(":")
-        links += [link(file, file.removeprefix("records/").removesuffix(".jsonl") + colon + line), " "]
-    return links
+MIXED = "A ratio between records of two steps may also compare two builds or two cards, and a composed value may mix them."
 
 
 def _table(made):
@@ -47,81 +43,27 @@ def _table(made):
         for row in made.rows
     ]
     name, title = f"table{made.number}", f"Table {made.number}: {made.title}"
-    return table(title, columns, rows, notes=made.notes, csv=f"{name}.csv", anchor=name)
+    shown = table(title, columns, rows, heading=False, notes=made.notes, csv=f"{name}.csv", is_wide=True)
+    return folded(name, title, shown)
 
 
 def _figure(made):
     name = f"figure{made.number}"
-    return figure(name, f"Figure {made.number}", f"{name}.svg", made.title, made.title, f"{name}.csv")
+    return figure(name, f"Figure {made.number}", made.title, f"{name}.svg", f"{name}.csv")
 
 
-def _scaled(values, unit):
-    """Texts of values; shares are percents."""
-    return [written((100 if unit == "%" else 1) * value) for value in values]
-
-
-def _value(line, unit):
-    """The measured value of a line with its unit."""
-    measured = line.measured
-    text, low, high = _scaled((measured.value, measured.low, measured.high), unit)
-    return f"{text if measured.low == measured.high else f'{text} [{low}, {high}]'} {unit}"
-
-
-def _paper(line, unit):
-    values = sorted(line.paper.values())
-    if not values:
-        return ""
-    low, high = _scaled((values[0], values[-1]), unit)
-    return f"; the paper {low if low == high else f'{low} to {high}'}{' %' if unit == '%' else ''}"
-
-
-def basis_text(measured):
-    """What a value was measured on: frames and samples, and how many samples were left out."""
-    several = f"{measured.samples} {measured.basis}" if measured.samples > 1 else "one sample"
-    disturbed = f"{measured.disturbed} disturbed samples left out" if measured.disturbed else ""
-    return ", ".join(filter(None, (measured.frames, "" if measured.is_exact else several, disturbed)))
-
-
-def _mark(verdict):
-    return element("span", verdict, class_=MARKS.get(verdict, "quiet"))
-
-
-def _line(lines, label, unit):
-    """A verdict: of one line with a value, or of several without one that have the same reason."""
-    first = lines[0]
-    verdict = [_mark(first.verdict), f" ({first.reason})" if first.reason else ""]
-    label = f"{label}: " if label else ""
-    if first.measured is None:
-        return [label, *verdict]
-    value = f"{label}{_value(first, unit)}{_paper(first, unit)} – "
-    basis = [basis_text(first.measured), " ", records_links(first.measured.records)]
-    return [value, *verdict, element("br"), element("span", basis, class_="quiet")]
-
-
-def _lines(claim):
-    """Lines with a value, then the others, of which those with the same reason become one."""
-    merged = {}
-    for line in sorted(claim.lines, key=lambda line: line.measured is None):
-        merged.setdefault((line.verdict, line.reason) if line.measured is None else id(line), []).append(line)
-    for group in merged.values():
-        is_whole = len(group) == len(claim.lines) > 1
-        yield _line(
-            group, "" if is_whole else ", ".join(line.label for line in group), claim.fields.get("unit", "")
-        )
-
-
-def _claim(claim):
-    fields, shown = claim.fields, []
-    for name in fields.get("shown", []):
-        word = name.rstrip("0123456789")
-        shown += [
-            " · " if not shown else " ",
-            link(f"#{name}", f"{word.capitalize()} {name.removeprefix(word)}"),
-        ]
-    note = [element("br"), element("span", fields["note"], class_="quiet")] if "note" in fields else None
-    place = element("span", fields["where"], shown, class_="quiet")
-    says = [fields["says"], note, element("br"), place]
-    return Row([[_mark(claim.verdict)], says, [items(_lines(claim))]], anchor=claim.id)
+def _methods(folder):
+    """The table of the four methods. The one that is fastest most often is the first, in sight on a phone."""
+    rows, fastest = headline.method_rows(folder), []
+    for row in headline.four_methods(folder):
+        times = {name: case.total() / case.frames for name, case in row["cases"].items() if case}
+        fastest.append(min(times, key=times.get))
+    order = sorted(FOUR, key=fastest.count, reverse=True)
+    shown = []
+    for (scene, k, *texts), best in zip(rows, fastest):
+        own = dict(zip(FOUR, texts)) | {best: [element("strong", texts[FOUR.index(best)])]}
+        shown.append([scene, k, *(own[name] for name in order)])
+    return table(METHODS_TITLE, ["scene", "k", *order], shown, heading=False, notes=[METHODS])
 
 
 def gaps(folder):
@@ -154,35 +96,68 @@ def _steps(folder):
         ]
         for name, step in folder.steps.items()
     ]
-    return table("What was run", columns, rows, heading=False)
+    title = f"The commands of {len(rows)} steps"
+    return folded("commands", title, table(title, columns, rows, heading=False, is_wide=True))
 
 
-def _links(name, made):
-    return [(f"{name}{one.number}", f"{name.capitalize()} {one.number}") for one in made]
+def _commits(commits):
+    return f"commit{'s' if len(commits) > 1 else ''} {' and '.join(commits)}"
+
+
+def _provenance(folder):
+    """One line if all records are of one build and one card, and a warning with a table if not."""
+    found = origins(folder)
+    builds, cards = builds_of(found), cards_of(found)
+    if is_uniform(found):
+        [commits] = builds.values()
+        where = f"one card, {cards[0]}" if cards else "one processor"
+        same = ", which have the same sources," if len(commits) > 1 else ""
+        return element("p", f"All records are of {_commits(commits)}{same} and of {where}.", class_="quiet")
+    counts = [f"{len(builds)} builds of tandem"] if len(builds) > 1 else []
+    counts += [f"{len(cards)} cards"] if len(cards) > 1 else []
+    rows = {}
+    for origin in found:
+        where = ", ".join(origin.cards) or "processor"
+        rows.setdefault((_commits(builds[origin.build]), where), {})[origin.step] = None
+    listed = [[commits, where, ", ".join(steps)] for (commits, where), steps in sorted(rows.items())]
+    title = "Which step is of which build and card"
+    said = element("p", element("strong", "Warning: "), f"the records are of {' and '.join(counts)}. {MIXED}")
+    shown = table(title, ["build", "card", "steps"], listed, heading=False)
+    return element("div", said, folded("provenance", title, shown), class_="warning", role="note")
+
+
+def _section_of(name, made, draw):
+    """A section of all figures or tables, which begins with links to them."""
+    links = [[link(f"#{name}{one.number}", f"{name.capitalize()} {one.number}"), " "] for one in made]
+    return Section(f"{name}s", f"{name.capitalize()}s", [element("p", links), *map(draw, made)])
+
+
+def _about(folder):
+    first, ceilings = next(iter(folder.steps.values())), folder.ceilings()
+    device = ceilings["device"]["name"] if ceilings else first["device"]
+    return device, (
+        f"Tables 1 to 7 and Figures 1 to 13 of Schmidtke and Erleben, IEEE TVCG 2018, measured by tandem on {device}, size {first['size']}. "
+        "Figure 14 is ours."
+    )
 
 
 def write(folder, tables, figures, claims):
-    first, ceilings = next(iter(folder.steps.values())), folder.ceilings()
-    device = ceilings["device"]["name"] if ceilings else first["device"]
-    about = [
-        f"Tables 1 to 7 and Figures 1 to 13 of Schmidtke and Erleben, IEEE TVCG 2018, measured by tandem on {device}, size {first['size']}. ",
-        "The paper's schedule lets each work-item walk its own seeds; ours, grouped, has the same chunks, and a work-group shares its walks.",
-    ]
-    methods = table(
-        METHODS_TITLE, ["scene", "k", *FOUR], headline.method_rows(folder), heading=False, notes=[METHODS]
-    )
-    columns, rows = ("verdict", "the paper states", "our records"), map(_claim, claims)
-    verdicts = table("Claims", columns, rows, heading=False, notes=[CLAIMS], csv="claims.csv")
-    missing = gaps(folder)
+    device, about = _about(folder)
+    missing, wrong = gaps(folder), errata(claims)
     sections = [
-        Section("methods", METHODS_TITLE, methods, [("methods", "Methods")]),
-        Section("claims", "Claims", verdicts),
-        *([Section("gaps", "Gaps", items(missing))] if missing else []),
-        Section("figures", "Figures", [*map(_figure, figures)], _links("figure", figures)),
-        Section("tables", "Tables", [*map(_table, tables)], _links("table", tables)),
+        Section("claims", f"{len(counted(claims))} claims of the paper", claim_groups(claims, "claims")),
+        Section("methods", METHODS_TITLE, _methods(folder)),
+        _section_of("figure", figures, _figure),
+        _section_of("table", tables, _table),
         Section("steps", "What was run", _steps(folder)),
+        *([Section("gaps", "Gaps", items(missing))] if missing else []),
+        *([Section("errata", "Errata of the paper", wrong)] if wrong else []),
     ]
-    lead = [paragraphs(headline.sentences(folder, claims), "lead"), element("p", about, class_="quiet")]
+    lead = [
+        paragraphs(headline.sentences(folder, claims), "lead"),
+        _provenance(folder),
+        element("p", about, class_="quiet"),
+    ]
     title = f"Chunked bounding volume hierarchies: the paper beside ours, on {device}"
-    page = Page(title, sections, lead, has_images=True, style=STYLE)
+    page = Page(title, sections, lead, scripts=[groups_script()], without="", has_images=True, style=STYLE)
     (folder.path / "index.html").write_text(html_of(page))

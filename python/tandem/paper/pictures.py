@@ -5,6 +5,7 @@ import csv
 import math
 import pathlib
 import shutil
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -13,6 +14,7 @@ import numpy
 from matplotlib.patches import Rectangle
 
 from .drawing import COLOURS, INK, PALE, Plot, missing
+from .tables import written
 
 TITLES = {
     "funnel": "funnel",
@@ -67,7 +69,8 @@ def rendered(folder, scene, fraction):
 
 
 def scenes(folder, number, selected, title):
-    """A figure with one image for each selected (scene, fraction)."""
+    """A figure with one image for each selected (scene, fraction) that has one. title: what comes before the names
+    of those that are shown."""
     pictures = [
         (scene, fraction, image)
         for scene, fraction in selected
@@ -79,7 +82,9 @@ def scenes(folder, number, selected, title):
     for ax, (scene, fraction, image) in zip(plot.axes, pictures):
         ax.imshow(image)
         ax.axis("off")
-        ax.set_title(f"{TITLES[scene]}, at {fraction:.0%} of its steps", fontsize=9, loc="left", color=INK)
+        ax.set_title(
+            f"{TITLES[scene]}, at {100 * fraction:.0f} % of its steps", fontsize=9, loc="left", color=INK
+        )
         plot.rows.append(
             {
                 "scene": scene,
@@ -87,36 +92,31 @@ def scenes(folder, number, selected, title):
                 "file": f"pictures/{scene}-{fraction:.0%}.png".replace("%", ""),
             }
         )
-    return plot.save(folder.path, title)
+    names = lambda some: ", ".join(dict.fromkeys(TITLES[scene] for scene, *_ in some))
+    shown = {scene for scene, *_ in pictures}
+    lacking = names(one for one in selected if one[0] not in shown)
+    return plot.save(
+        folder.path, f"{title}: {names(pictures)}" + (f" (no picture of {lacking})" if lacking else "")
+    )
 
 
 def figure1(folder):
-    simulation = folder.simulation("sim-funnel")
-    contacts = (
-        f", {max(simulation.curve('contacts_kept')):,} contacts kept at most (the paper: 550,000 on average)"
-        if simulation
-        else ""
-    )
-    bodies = f"{simulation.run['scene']['bodies']:,} bodies in a funnel" if simulation else "The funnel"
-    return scenes(folder, 1, [("funnel", 1.0)], f"{bodies}{contacts}")
+    """The paper's number is of its jacks; our simulation of the same scene has the paper's solver."""
+    jacks, contacts = folder.simulation("solver-jacks"), ""
+    if jacks:
+        kept = written(float(round(statistics.fmean(jacks.curve("contacts_kept")))))
+        contacts = f" ({kept} contacts on average in {len(jacks.steps)} steps of our scene jacks; the paper: 550,000)"
+    return scenes(folder, 1, [("funnel", 1.0)], f"Jacks that jam{contacts}")
 
 
 def figure2(folder):
-    return scenes(
-        folder,
-        2,
-        [("funnel", 0.5), ("funnel", 1.0), ("colosseum", 0.0), ("colosseum", 1.0)],
-        "Bodies in a funnel, and a building: two of the paper's four kinds of simulation",
-    )
+    selected = [("funnel", 0.5), ("funnel", 1.0), ("colosseum", 0.0), ("colosseum", 1.0)]
+    return scenes(folder, 2, selected, "Simulations of rigid bodies")
 
 
 def figure6(folder):
-    return scenes(
-        folder,
-        6,
-        [(scene, 1.0) for scene in ("glasses", "funnel", "colosseum", "plates", "tower")],
-        "Test scenes of the paper, at the end of their steps",
-    )
+    selected = [(scene, 1.0) for scene in ("glasses", "funnel", "colosseum", "plates", "tower")]
+    return scenes(folder, 6, selected, "Test scenes of the paper")
 
 
 class Chunks:

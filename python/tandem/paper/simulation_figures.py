@@ -7,6 +7,7 @@ from .drawing import (
     COLOUR_OF,
     COLOURS,
     INK,
+    PALE,
     STAGES,
     Plot,
     legend_above,
@@ -18,16 +19,7 @@ from .drawing import (
 from .figures import GPU, MAX_COSTS
 from .folder import SCENES, STEPS_OF_PAPER, number, paper_table
 from .measures import MIN_RANGE
-from .simulation_tables import common_runs, data_path, percentages
-from .tables import written
-
-PARTS = {
-    "solver": "solve",
-    "initialization": "refit",
-    "broad": "broad",
-    "narrow": "traverse",
-    "contact_reduction": "reduce",
-}  # of Table 3, and their colours
+from .tables import simulations
 
 
 def fit(x, y):
@@ -82,7 +74,7 @@ def _measured(folder, runs):
 
 
 def figure9(folder):
-    runs = [run for run in folder.simulations("sim-") if run.scene in SCENES]
+    runs = [run for run in simulations(folder) if run.scene in SCENES]
     if not runs:
         return missing(folder.path, 9, "Contacts over steps", "no simulation has completed")
     plot = Plot(9, 2, 3.1)
@@ -122,90 +114,77 @@ def figure9(folder):
     if any(exponents.values()):
         legend_above(scaling, 2)
     fits = ", ".join(f"{scene} {values[0]:.2f}" for scene, values in exponents.items() if values)
-    text = (
-        f"device time grows with contacts, exponents {fits}"
-        if fits
-        else "they change too little to fit device time to them"
+    text = f"fitted exponents: {fits}" if fits else "they change too little for a fit"
+    return plot.save(
+        folder.path,
+        f"Contacts kept in our steps (dashed: the paper's medians), and device time over contacts found ({text})",
     )
-    return plot.save(folder.path, f"Contacts of our steps (dashed: the paper's medians of 500 steps): {text}")
 
 
-def _bars_of_10(runs):
-    """(label, {part: percent}, milliseconds a step, records): our runs and the paper's device, scene by scene."""
-    rows = []
-    for scene in SCENES:
-        for run in [run for run in runs if run.scene == scene]:
-            path = data_path(run).replace(", conversion", "") + (", composed" if run.is_composed else "")
-            parts = {name.removesuffix("_percent"): value for name, value in percentages(run).items()}
-            rows.append(
-                (
-                    f"{scene}, {run.run['devices'][0]['id']}, {path}, {len(run.steps)} steps",
-                    parts,
-                    1e3 * run.host("step") / len(run.steps),
-                    run.location,
-                )
-            )
-        for row in [row for row in paper_table(3) if row["gpu"] == GPU and row["scene"] == scene]:
-            parts = {part: number(row[f"{part}_percent"]) or 0 for part in PARTS}
-            rows.append(
-                (
-                    f"{scene}, paper's {GPU}, {STEPS_OF_PAPER} steps",
-                    parts,
-                    6e4 * number(row["total_min"]) / STEPS_OF_PAPER,
-                    "results/paper/table3.csv",
-                )
-            )
+def _bars_of_10(run):
+    """(label, {stage: seconds}, records): all steps of the run, or of the paper if the run is composed, and the paper's
+    devices with the numbers of its Tables 6 and 7."""
+    scale = STEPS_OF_PAPER / len(run.steps) if run.is_composed else 1
+    own = {stage: scale * run.stage(stage) for stage in STAGES}
+    rows = [(f"ours, {run.run['devices'][0]['name']}", own, run.location)]
+    transfers = {row["gpu"]: row for row in paper_table(6) if row["scene"] == run.scene}
+    for kernels in [row for row in paper_table(7) if row["scene"] == run.scene]:
+        columns = kernels | transfers[kernels["gpu"]]
+        seconds = {stage: 60 * (number(columns.get(f"{stage}_min")) or 0) for stage in STAGES}
+        rows.append(
+            (f"paper's {kernels['gpu']}", seconds, "results/paper/table6.csv results/paper/table7.csv")
+        )
     return rows
 
 
+def _largest_costs(bars):
+    """The stages with the largest shares of all bars."""
+    share = lambda stage: sum(
+        seconds[stage] / (sum(seconds.values()) or 1) for rows in bars for _, seconds, _ in rows
+    )
+    return sorted(STAGES, key=share, reverse=True)[:MAX_COSTS]
+
+
+def _draw_costs(ax, rows, largest):
+    """Bars of the largest costs and of the sum of all others."""
+    left = numpy.zeros(len(rows))
+    parts = [(stage, [stage], COLOUR_OF[stage]) for stage in largest]
+    parts.append(("others", [stage for stage in STAGES if stage not in largest], PALE))
+    for name, stages, colour in parts:
+        values = numpy.array([sum(seconds[stage] for stage in stages) for _, seconds, _ in rows])
+        ax.barh(range(len(rows)), values, left=left, color=colour, height=0.7, label=name)
+        left += values
+    ax.set_yticks(range(len(rows)), [label for label, *_ in rows], fontsize=8)
+    ax.set_ylim(max(len(rows), 2) - 0.5, -0.5)
+
+
 def figure10(folder):
-    runs = common_runs(folder) + folder.compositions()
+    """The largest costs of collision detection in seconds, a panel for each scene."""
+    runs = _measured(folder, [run for run in simulations(folder) if run.scene in SCENES])
     if not runs:
         return missing(folder.path, 10, "What simulations cost", "no simulation has completed")
-    rows = _bars_of_10(runs)
-    plot = Plot(10, 1, 1.4 + 0.3 * len(rows))
-    ax = plot.axes[0]
-    left = numpy.zeros(len(rows))
-    for part, colour in PARTS.items():
-        values = numpy.array([parts[part] for _, parts, *_ in rows])
-        ax.barh(
-            range(len(rows)),
-            values,
-            left=left,
-            color=COLOUR_OF[colour],
-            height=0.7,
-            label=part.replace("_", " "),
-        )
-        left += values
-    for row, (label, parts, step_ms, records) in enumerate(rows):
-        ax.annotate(f" {written(float(f'{step_ms:.3g}'))} ms", (100, row), va="center", fontsize=8)
+    bars = [_bars_of_10(run) for run in runs]
+    largest = _largest_costs(bars)
+    plot = Plot(10, len(bars), heights=[0.8 + 0.2 * len(rows) for rows in bars])
+    for ax, run, rows in zip(plot.axes, runs, bars):
+        _draw_costs(ax, rows, largest)
+        steps = f"{len(run.steps)} of {STEPS_OF_PAPER}" if run.is_composed else len(run.steps)
+        ax.set_title(f"{run.scene}, ours from {steps} steps", fontsize=9, loc="right", color=INK)
         plot.rows += [
-            {"run": label, "part": part, "percent": value, "ms_a_step": step_ms, "records": records}
-            for part, value in parts.items()
+            {"scene": run.scene, "run": label, "cost": stage, "seconds": seconds[stage], "records": records}
+            for label, seconds, records in rows
+            for stage in STAGES
         ]
-    ax.set_yticks(range(len(rows)), [label for label, *_ in rows], fontsize=8)
-    ax.set(xlabel="percent; at the right, ms a step", xlim=(0, 125))
-    ax.set_xticks(range(0, 101, 20))
-    ax.invert_yaxis()
-    legend_above(ax, 2)
-    solver = {
-        who: [parts["solver"] for label, parts, *_ in rows if ("paper's" in label) == (who == "paper")]
-        for who in ("ours", "paper")
-    }
-    text = {who: f"{min(values):.0f} to {max(values):.0f} %" for who, values in solver.items() if values}
+    plot.axes[len(bars) - 1].set_xlabel("seconds")
+    legend_above(plot.axes[0], 4)
     return plot.save(
         folder.path,
-        f"Parts of a simulated step: the solver takes {text['ours']} of ours"
-        + (f", and {text['paper']} of the paper's" if "paper" in text else ""),
+        "The six largest costs of collision detection in simulations, without the solver (the paper's tables lack preprocess and postprocess)",
     )
 
 
 def figure11(folder):
-    runs = [
-        run
-        for run in _measured(folder, common_runs(folder, ("sim-", "host-")))
-        if run.scene in ("funnel", "glasses")
-    ]
+    runs = _measured(folder, [run for run in simulations(folder) if run.scene in ("funnel", "glasses")])
     runs.sort(key=lambda run: run.scene)
     if not runs:
         return missing(
