@@ -355,12 +355,26 @@ class Committed(unittest.TestCase):
         self.assertEqual({verdict for _, verdict in changed.values()}, {NOT_SETTLED}, changed)
 
     def test_small_scenes_judge_no_claim_about_size(self):
-        found = self.copy(lambda line: line, lambda step: {**step, "size": "small"})
+        small = lambda step: {**step, "size": "small"}
+        found = self.copy(lambda line: line, small)
         decided = [claim.id for claim in found if claim.verdict in (AGREES, DIFFERS)]
         self.assertGreaterEqual(len(decided), 6)
-        small = {fields["id"] for fields in claims.declared() if fields.get("small")}
-        self.assertLessEqual(set(decided), small)
+        flagged = {fields["id"] for fields in claims.declared() if fields.get("small")}
+        self.assertLessEqual(set(decided), flagged)
         self.assertIn("small scenes", {line.reason for claim in found for line in claim.lines})
+
+        def slower(line):
+            """Every second record takes three times as long."""
+            self.count += 1
+            for times in (line.get(name) for name in ("total_ns", "breakdown_ns") if self.count % 2):
+                if times:
+                    times["samples"] = [3 * value for value in times["samples"]]
+            return line
+
+        self.count = 0
+        self.assertEqual(self.lines(self.copy(slower, small)), self.lines(found), "times do not matter")
+        self.count = 0
+        self.assertNotEqual(self.lines(self.copy(slower)), self.lines(self.claims))
 
     def test_every_claim_names_its_place_and_reason(self):
         self.assertEqual(len({claim.id for claim in self.claims}), len(self.claims))

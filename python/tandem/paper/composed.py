@@ -80,7 +80,7 @@ def _sides(pairs, above, below):
     top = Sampled([(a, frames) for a, _, frames in pairs], above)
     bottom = Sampled([(b, frames) for _, b, frames in pairs], below)
     batches = [batches_of(a, frames) for a, _, frames in pairs]
-    if not all(batches):
+    if None in batches:
         raise NotMeasured("the number of batches was not recorded")
     if not (bottom.is_present() or bottom.left_out):
         raise NotMeasured("a stage of this claim took no time")
