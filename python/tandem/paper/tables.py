@@ -7,7 +7,7 @@ import math
 import statistics
 
 from ..csv_fields import fields
-from .folder import PAPERS_SOLVER, SCENES, number, paper_table
+from .folder import SCENES, number, paper_table
 
 
 @dataclasses.dataclass
@@ -133,7 +133,7 @@ def table1(folder):
             row.pop("median_found_thousand"),
         )
         row["steps"] = 500
-    for run in folder.simulations(PAPERS_SOLVER):
+    for run in folder.simulations("sim-"):
         rows.append(
             _scene_row(
                 run.run["scene"],
