@@ -64,10 +64,10 @@ class Paper(unittest.TestCase):
         """Tables, figures and names bring the steps that make their recordings; numbers do not."""
         steps = steps_of("small", "host")
         names = lambda text: [steps[number].name for number in chosen(text, steps)]
-        self.assertEqual(names("figure13"), ["sim-glasses", "thresholds"])
-        self.assertEqual(names("precision,table2"), ["ceilings", "sim-glasses", "precision"])
+        self.assertEqual(names("figure13"), ["solver-glasses", "thresholds"])
+        self.assertEqual(names("precision,table2"), ["ceilings", "solver-glasses", "precision"])
         self.assertEqual(names(self.number("thresholds")), ["thresholds"])
-        self.assertEqual(names("1:2,1"), ["ceilings", "sim-funnel"])
+        self.assertEqual(names("1:2,1"), ["ceilings", "solver-funnel"])
         self.assertEqual(len(names("")), len(steps))
         for number in (
             *(f"table{i}" for i in range(1, 8)),
@@ -141,7 +141,9 @@ class Paper(unittest.TestCase):
         first = self.number("glb-tower")  # needs a recording that does not exist
         last = int(first) + 1
         error = paper(*self.host, "--steps", f"{first}:{last}", code=3).stderr
-        self.assertIn("step glb-tower did not run: tower.frames is missing; step sim-tower makes it", error)
+        self.assertIn(
+            "step glb-tower did not run: tower.frames is missing; step solver-tower makes it", error
+        )
         self.assertEqual([s["exit"] for s in self.steps()], [3, 0])
         self.assertEqual([error for step in self.steps() for error in problems_of_record(step, "paper")], [])
         for name in FILES:

@@ -3,6 +3,8 @@
 
 import json
 
+from tandem.paper.quantities import resolved
+
 ROUNDS = 10
 FULL_STEPS = 500
 SCENE_KEYS = {
@@ -11,9 +13,14 @@ SCENE_KEYS = {
     "colosseum": "recording:x,of=colosseum:a=1@0",
     "plates": "plates:count=3",
     "tower": "recording:x,of=tower:a=1@0",
+    "jammed funnel": "recording:x,of=funnel:bodies=1@0",
+    "jammed glasses": "recording:x,of=glasses:bodies=1@0",
     "jacks 0.05": "pile:bodies=2,mesh=jack,density=0.05,x",
     "jacks 0.2": "pile:bodies=2,mesh=jack,density=0.2,x",
 }
+
+
+GPROXIMITY = {"group_size": "992", "local_queue": "1023", "groups": "0"}  # launch geometry of its preset
 
 
 def times(values):
@@ -39,11 +46,18 @@ def record(scene, wanted, count):
         "status": "ok",
         "algorithm": wanted["algorithm"],
         "preset": wanted.get("preset", "paper"),
-        "settings": {"batch": "1", "queue_bytes": "9", **settings},
+        "settings": {"batch": "1", "queue_bytes": "67108864", **GPROXIMITY, "copies": "pair", **settings},
         "asked": {},
-        "scene": {"name": scene, "key": SCENE_KEYS[scene], "digest": scene, "bodies": 1, "tetrahedra": 1},
+        "scene": {
+            "name": scene,
+            "key": SCENE_KEYS[scene],
+            "digest": scene,
+            "bodies": 1,
+            "vertices": 1,
+            "tetrahedra": 1,
+        },
         "frames": {"first": 0, "last": FULL_STEPS - 1},
-        "devices": [{"id": "cuda:0", "name": "GPU", "driver": "1", "kind": "gpu"}],
+        "devices": [{"id": "cuda:0", "name": "GPU", "driver": "1", "kind": "gpu", "compute_units": 14}],
         "environment": {"commit": "1", "dirty": False},
         "conditions": {"disturbed": []},
         "total_ns": {**times([10**9] * count), "frames": [[10**9 / FULL_STEPS] * FULL_STEPS] * count},
@@ -51,7 +65,9 @@ def record(scene, wanted, count):
         "stages": {},
         "kernel_times": {},
         "host_work": {},
+        "phases": {},
         "work": {
+            "batches": FULL_STEPS,
             "counters": {},
             "contacts": [1] * FULL_STEPS,
             "candidate_pairs": [1] * FULL_STEPS,
@@ -74,26 +90,37 @@ def _stage(made, name, values):
 def set_quantity(made, name, values):
     """Gives a record a quantity of tandem.paper.quantities: nanoseconds for each round, or the first value as
     a count."""
-    kind, _, rest = name.partition(":")
+    kind, _, rest = resolved(name).partition(":")
     first = rest.split("+")[0]
-    if kind in ("frame", "narrow"):
+    if kind == "largest":
+        set_quantity(made, first, values)
+    elif kind == "sum":
+        *others, last = rest.split("+")
+        known = [made["stages"][name]["device_ns"]["samples"] for name in others if name in made["stages"]]
+        set_quantity(made, last, [value - sum(parts) for value, *parts in zip(values, *known)])
+    elif kind == "frame":
         made["total_ns"] = {
             **times(values),
             "frames": [[value / FULL_STEPS] * FULL_STEPS for value in values],
         }
     elif kind == "breakdown":
         made["breakdown_ns"] = {**times(values), "frames": [values[0] / FULL_STEPS] * FULL_STEPS}
-    elif kind in ("stages", "largest"):
+    elif kind == "stages":
         _stage(made, first, values)
     elif kind == "host work":
         made["host_work"][first] = {"host_ns": times(values)}
+    elif kind == "phases":
+        frames = [values[0] / FULL_STEPS] * FULL_STEPS
+        made["phases"][first] = {"host_ns": {**times(values), "frames": frames}}
     elif kind == "release launches":
         made["kernel_times"]["traverse"] = {"launches": values[0]}
     elif kind == "counter":
         made["work"]["counters"][rest] = values[0]
     elif kind in ("contacts", "body pairs"):
         made["work"][kind.replace(" ", "_")] = [values[0] / FULL_STEPS] * FULL_STEPS
-    elif kind in ("bodies", "tetrahedra"):
+    elif kind == "batches":
+        made["work"]["batches"] = values[0] * FULL_STEPS
+    elif kind in ("bodies", "vertices", "tetrahedra"):
         made["scene"][kind] = round(values[0])
     else:  # launches and bytes of a stage
         made["stages"].setdefault(

@@ -1,22 +1,24 @@
 # SPDX-License-Identifier: MIT
 """Tables 4 and 5: the methods beside each other, resident and as published."""
 
+import statistics
+
 from . import composed
 from .folder import SCENES, STEPS_OF_TABLES, number, paper_table
-from .methods import FOUR, found, four_of_scenes, name_of, names
-from .quantities import NotMeasured
+from .methods import FOUR, columns_of, found, four_of_scenes, name_of, names
+from .quantities import NotMeasured, frame_range, seconds_by_round
 from .ratios import ratio_of
 from .tables import Table, ordered, paper_rows, written
 
 COLUMNS = {
     "frame": "frame",
-    "narrow": "narrow",
-    "read": "stages:read",
-    "write": "stages:write",
+    **{column: name for name, column in columns_of(4).items() if column in ("narrow", "read", "write")},
     "launches": "launches",
     "launches_as_theirs": "release launches",
 }
-PARTS = ("transform", "refit", "traverse", "contact", "balance", "preprocess", "postprocess", "read", "write")
+PARTS = tuple(name for name, column in columns_of(5).items() if column == f"{name}_s")
+UNTIMED = {"make_seeds_s": "host work:make seeds", "queue_array_s": "host work:queue array"}  # by the release
+ROUNDING = 0.05  # of the paper's factors
 SMALL_K = "8"
 
 
@@ -28,8 +30,8 @@ def _ratio(other, own, quantity):
 
 
 def factors(scene, other, own, data_path):
-    """A row of Table 4: times and launches of `other` over those of `own`, with the interval of the whole
-    frame."""
+    """A row of Table 4: times and launches of `other` over those of `own`, with the intervals of the whole
+    frame and of the narrow phase."""
     found_ratios = {name: _ratio(other, own, quantity) for name, quantity in COLUMNS.items()}
     frame = found_ratios["frame"]
     row = {
@@ -41,12 +43,20 @@ def factors(scene, other, own, data_path):
     }
     row |= {name: measured and measured.value for name, measured in found_ratios.items()}
     return row | {
-        "frame_low": frame and frame.low,
-        "frame_high": frame and frame.high,
+        **_ends(found_ratios),
         "samples": frame and frame.samples,
         "frames": frame and frame.frames,
         "queue_bytes": other.settings.get("queue_bytes") if data_path == "published" else None,
         "records": " ".join((own.locations[0], other.locations[0])),
+    }
+
+
+def _ends(ratios):
+    """Columns of the ends of intervals."""
+    return {
+        f"{name}_{end}": ratios[name] and getattr(ratios[name], end)
+        for name in ("frame", "narrow")
+        for end in ("low", "high")
     }
 
 
@@ -80,43 +90,69 @@ def _published_rows(folder, scene):
     )
     if own is None:
         return []
-    compared = ([other] if other else []) + folder.cases(f"gpus-{scene}")
+    gpus = folder.cases(f"gpus-{scene}")
+    compared = ([other] if other else []) + gpus
     rows = [factors(scene, case, own, "published") for case in compared if _ratio(case, own, "frame")]
-    arrays = [
-        case
-        for step in ("array", "array-again")
-        for case in folder.cases(step)
-        if case.settings.get("queue_bytes") == _largest(folder)
-    ]
-    if other and arrays and other.batches:
-        rows.append(_with_array(scene, other, own, arrays))
+    k40c = [case for case in gpus if case.preset == "published-k40c"]
+    for case, arrays, gpu in (
+        *([(other, _whole_arrays(folder), None)] if other else []),
+        *((case, folder.cases("array-k40c"), "K40c") for case in k40c),
+    ):
+        rows += _with_array(scene, case, own, arrays, gpu)
     return rows
 
 
-def _largest(folder):
-    sizes = [case.settings["queue_bytes"] for step in ("array", "array-again") for case in folder.cases(step)]
-    return "device" if "device" in sizes else max(sizes, key=int, default=None)
+def _whole_arrays(folder):
+    """The cases with the largest queue array of this device's launch geometry."""
+    cases = [case for step in ("array", "array-again") for case in folder.cases(step)]
+    sizes = [case.settings["queue_bytes"] for case in cases]
+    largest = "device" if "device" in sizes else max(sizes, key=int, default=None)
+    return [case for case in cases if case.settings["queue_bytes"] == largest]
 
 
-def _with_array(scene, other, own, arrays):
-    row = factors(scene, other, own, "published")
-    ratios = {
-        name: composed.ratio_with_array(other, COLUMNS[name], own, COLUMNS[name], arrays)
-        for name in ("frame", "narrow", "write")
-    }
+def _composed(other, own, quantity, arrays):
+    try:
+        return composed.ratio_with_array(other, quantity, own, quantity, arrays)
+    except NotMeasured:
+        return None
+
+
+def _with_array(scene, other, own, arrays, gpu):
+    """The row of factors with the upload of the whole array, in a list, if it was measured. gpu: the one of
+    the paper's whose array it is."""
+    ratios = {name: _composed(other, own, COLUMNS[name], arrays) for name in ("frame", "narrow", "write")}
     frame = ratios["frame"]
-    return (
-        row
-        | {name: measured.value for name, measured in ratios.items()}
+    if not frame:
+        return []
+    return [
+        factors(scene, other, own, "published")
+        | {name: measured and measured.value for name, measured in ratios.items()}
+        | _ends(ratios)
         | {
             "method": f"{name_of(other)}, whole array (composed) / {name_of(own)}",
-            "frame_low": frame.low,
-            "frame_high": frame.high,
             "samples": frame.samples,
             "queue_bytes": arrays[0].settings["queue_bytes"],
+            **_beside_paper(scene, ratios["narrow"], gpu),
             "records": " ".join(frame.records),
         }
-    )
+    ]
+
+
+def _beside_paper(scene, narrow, gpu):
+    """The paper's factor of the narrow phase on a GPU and ours over it, with intervals. The paper's is that
+    of its rounding."""
+    of_paper = [number(row["narrow"]) for row in paper_table(4) if (row["scene"], row["gpu"]) == (scene, gpu)]
+    if not of_paper or not narrow:
+        return {}
+    low, value, high = (of_paper[0] + part for part in (-ROUNDING, 0, ROUNDING))
+    return {
+        "paper_narrow": value,
+        "paper_low": low,
+        "paper_high": high,
+        "narrow_over_paper": narrow.value / value,
+        "over_paper_low": narrow.low / high,
+        "over_paper_high": narrow.high / low,
+    }
 
 
 def _composition_note(folder):
@@ -124,14 +160,10 @@ def _composition_note(folder):
     arrays, texts = folder.cases("array-k40c"), []
     for scene in SCENES:
         parts = [case for case in folder.cases(f"gpus-{scene}") if case.preset == "published-k40c"]
-        whole = folder.cases(f"whole-{scene}") or [case for case in arrays if case.scene == scene]
-        if parts and whole and arrays:
-            try:
-                texts.append(
-                    f"{scene} {written(composed.ratio_with_array(parts[0], 'frame', whole[0], 'frame', arrays).value)}"
-                )
-            except NotMeasured:
-                continue
+        whole = folder.cases(f"whole-{scene}")
+        measured = _composed(parts[0], whole[0], "frame", arrays) if parts and whole and arrays else None
+        if measured:
+            texts.append(f"{scene} {written(measured.value)}")
     return (
         (f"A composed frame with a K40c's array over the same frame measured whole: {', '.join(texts)}.",)
         if texts
@@ -161,10 +193,12 @@ def table4(folder):
         ordered(rows),
         (
             "Resident: everything stays on the device; four methods. Published: both algorithms convert, upload and read back everything in every frame. Above 1, "
-            "gProximity takes longer. frame has whole frames with their 95 % interval; narrow is what the paper calls narrow phase. Both methods of a row have the "
+            "gProximity takes longer. frame has whole frames, narrow the narrow phase as the release times it, both with 95 % intervals. Both methods of a row have the "
             "same frames of one recording.",
+            "Rows with a K40c's launch geometry and whole array have the paper's factor for the K40c beside them, with the interval of its rounding, and ours over it.",
             "gProximity published also uploads its queue array for every batch; queue_bytes has its size. Records without setting sizes have a K40c's "
-            "launch geometry and batches of 30 body pairs. Composed rows add the measured upload of the array that the release would allocate on this device to each batch.",
+            "launch geometry and batches of 30 body pairs. Composed rows add the measured upload of the whole array to each batch, from a frame that is not among theirs; "
+            "their intervals draw rounds, uploads and frames anew.",
             "The published presets keep of ours: rounding = safe, contact_rule = opposing, a test that rejects pairs early. Records with broad = sphere find body pairs by balls, the release by boxes.",
             "Column total is the paper's for whole simulations; we do not simulate with gProximity. launches counts every kernel, launches_as_theirs as "
             "the release does: a refit and a balance are one each.",
@@ -187,20 +221,34 @@ def _paper_rows_of_5():
     ]
 
 
+def _seconds(case, quantity):
+    """Seconds of a quantity in all frames, medians of the rounds; None for records without it."""
+    try:
+        found_times = [seconds_by_round(cell, quantity, frame_range(cell)) for cell in case.cells]
+    except NotMeasured:
+        return None
+    return sum(statistics.median(own.values()) for own in found_times if own)
+
+
 def _times(scene, case):
-    """A row of Table 5. Stages and rest are parts of the replays that time every command."""
-    separate = {"broad_s": case.stage("broad"), "seed_s": case.stage("seed")}
-    listed = sum(case.stage(name) for name in PARTS) + sum(separate.values())
+    """A row of Table 5. Its parts are of the replays that time every command."""
+    parts = {f"{name}_s": _seconds(case, name) for name in PARTS}
+    separate = {name: _seconds(case, quantity) for name, quantity in UNTIMED.items()}
+    separate |= {f"{name}_s": _seconds(case, f"stages:{name}") for name in ("broad", "seed")}
+    listed = sum(seconds or 0 for seconds in (*parts.values(), *separate.values()))
+    scaled = lambda columns: {
+        name: None if seconds is None else case.scale * seconds for name, seconds in columns.items()
+    }
     return {
         "scene": scene,
         "source": "ours",
         "device": case.device["id"],
         "method": f"{name_of(case)}, k = {case.settings.get('k')}",
-        **{f"{name}_s": case.scale * case.stage(name) for name in PARTS},
-        **untimed(case),
+        **scaled(parts),
         "launches_as_theirs": None if case.release_launches is None else case.scale * case.release_launches,
-        **{name: case.scale * value for name, value in separate.items()},
+        **scaled(separate),
         "rest_s": case.scale * max(case.breakdown() - listed, 0),
+        **scaled({f"{name}_s": _seconds(case, name) for name in ("initialization", "narrow")}),
         "whole_s": case.scale * case.total(),
         "whole_low_s": case.scale * case.total("low") if case.rounds > 1 else None,
         "whole_high_s": case.scale * case.total("high") if case.rounds > 1 else None,
@@ -227,17 +275,7 @@ def table5(folder):
         (
             "Column frames has the number of our frames; our values are scaled to 102 frames. whole is the median of replays that only time whole frames; "
             "samples has how many rounds each frame has, and one round has no interval. Stages and rest are of replays with timestamps, and stages may overlap.",
-            "The release does not time the making of seeds and the allocation of its queue array. Columns make_seeds and queue_array have these times, "
-            "which preprocess contains; they are empty for old records. Only we have the columns right of launches_as_theirs.",
+            "Columns left of launches_as_theirs have what the release times by these names, so that preprocess has neither seeds nor the queue array; columns make_seeds and "
+            "queue_array have these. initialization and narrow are the two phases of the release. Fields are empty for records without such names.",
         ),
     )
-
-
-def untimed(case):
-    """Seconds in 102 frames of those parts of stage preprocess that the release does not time; None for
-    records without them."""
-    found = {
-        name: case.host_work(work)
-        for name, work in (("make_seeds_s", "make seeds"), ("queue_array_s", "queue array"))
-    }
-    return {name: None if seconds is None else case.scale * seconds for name, seconds in found.items()}

@@ -3,6 +3,7 @@
 
 import csv
 import json
+import lzma
 import os
 import pathlib
 
@@ -14,6 +15,7 @@ from .simulation import Simulation, composed
 SCENES = ("funnel", "glasses", "colosseum", "plates", "tower")
 STEPS_OF_TABLES = 102  # frames 20 to 121 of the paper's Tables 4 and 5
 STEPS_OF_PAPER = 500  # of its simulations
+PAPERS_SOLVER = "solver-"  # beginning of the names of simulations with the settings of the paper's solver
 
 
 def paper_table(number):
@@ -81,13 +83,6 @@ class Case:
         """Launches, waits or bytes of all stages."""
         return sum(cell.of_stages(where) for cell in self.cells)
 
-    def host_work(self, name):
-        """Seconds of host work with that name; None for old records without names of host work."""
-        works = [cell.record.get("host_work") for cell in self.cells]
-        if None in works:
-            return None
-        return sum(work[name]["host_ns"]["median"] for work in works if name in work) / 1e9
-
     @property
     def release_launches(self):
         """Launches counted as in the paper's release; None if the records have no times of kernels."""
@@ -121,17 +116,21 @@ class Folder:
         self._cases = {}
 
     def _json_lines(self, name):
-        path = self.path / name
+        """Objects of a file of JSON lines, which may be compressed: then it is NAME.xz."""
+        path, opened = self.path / name, open
+        if not path.exists():
+            path, opened = path.with_name(f"{path.name}.xz"), lzma.open
         if not path.exists():
             return []
-        with open(path) as file:
-            whole = [line for line in file if line.endswith("\n")]
         try:
-            return [json.loads(line) for line in whole]
+            with opened(path, "rt") as file:
+                return [json.loads(line) for line in file if line.endswith("\n")]
         except ValueError:
             raise lines.RecordError(
                 f"{path}: a line is not JSON; measure the step again with --again"
             ) from None
+        except (lzma.LZMAError, EOFError):
+            raise lines.RecordError(f"{path}: is not a whole file of xz; compress it again") from None
 
     def named(self, beginning):
         """Names of completed steps with that beginning, in their order."""
@@ -196,15 +195,23 @@ class Folder:
         return composed(run, cells[0]) if run and cells else None
 
     def simulation(self, step):
-        """The simulation of a step, or "composed-SCENE"; None if it has not completed, or if its records are gone."""
+        """The simulation of a step, or "composed-SCENE"; None if it has not completed, or if its records are
+        gone."""
         if step.startswith("composed-"):
             scene = step.removeprefix("composed-")
-            return self.composition(self.simulation(f"sim-{scene}"), f"steps-{scene}")
+            return self.composition(self.simulation(f"{PAPERS_SOLVER}{scene}"), f"steps-{scene}")
         if step not in self.named(step):
             return None
-        lines_of_file = self._json_lines(f"records/{step}.jsonl")
+        place = f"records/{step}.jsonl"
+        lines_of_file = self._json_lines(place)
         has_run = any(line["kind"] == "run" for line in lines_of_file)
-        return Simulation(lines_of_file, step, f"records/{step}.jsonl") if has_run else None
+        suffix = "" if (self.path / place).exists() else ".xz"
+        return Simulation(lines_of_file, step, place + suffix) if has_run else None
+
+    def profiles(self, step):
+        """(line, record) of the profiles of a step."""
+        numbered = enumerate(self._json_lines(f"records/{step}.jsonl"), 1)
+        return [(line, record) for line, record in numbered if record["status"] == "ok"]
 
     def simulations(self, beginning):
         return [run for run in map(self.simulation, self.named(beginning)) if run]
@@ -221,7 +228,7 @@ class Folder:
         return [
             run
             for run in (
-                self.composition_or_none(self.simulation(f"sim-{scene}"), f"steps-{scene}")
+                self.composition_or_none(self.simulation(f"{PAPERS_SOLVER}{scene}"), f"steps-{scene}")
                 for scene in SCENES
             )
             if run

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: MIT
 """The answer of a folder in three sentences, and the table of the four methods that it is drawn from."""
 
+import math
 import statistics
 
-from .claims import counts
+from .claims import counts, errata
 from .methods import FOUR, four_of_scenes
 from .quantities import NotMeasured
 from .ratios import ratio_of
-from .rules import AGREES, DIFFERS, NOT_SETTLED, UNTESTED
+from .rules import AGREES, BY_CONSTRUCTION, DIFFERS, NOT_SETTLED, UNTESTED
 from .tables import written
 
 
@@ -45,12 +46,17 @@ def _span(values):
     return low if low == high else f"{low} to {high}"
 
 
+def _finite(measured):
+    """Values of those that were measured, not only in disturbed rounds."""
+    return [one.value for one in measured if one and math.isfinite(one.value)]
+
+
 def _resident(rows):
     parts = []
     for name, words in zip(
         [name for name in FOUR if name != "gProximity"], ("the paper's schedule", "ours, grouped,", "tiled")
     ):
-        values = [row["ratios"][name].value for row in rows if row["ratios"][name]]
+        values = _finite(row["ratios"][name] for row in rows)
         parts.append(
             f"{_span(values)} times as long as {words}" if values else f"an unmeasured time beside {words}"
         )
@@ -59,7 +65,7 @@ def _resident(rows):
 
 def _values(claims, wanted):
     [claim] = [claim for claim in claims if claim.id == wanted]
-    return [line.measured.value for line in claim.lines if line.measured]
+    return _finite(line.measured for line in claim.lines)
 
 
 def _published(claims):
@@ -67,20 +73,23 @@ def _published(claims):
     first = (
         f"As published, gProximity uploads its whole queue array for every batch, and its narrow phase takes {_span(whole)} times as long as chunked's"
         if whole
-        else "As published, with gProximity's whole queue array, no scene can be judged here"
+        else "As published, with gProximity's whole queue array, the narrow phase of no scene can be judged here"
     )
     return f"{first}; with a bounded array, the factor is {_span(small)}." if small else f"{first}."
 
 
+def _verdicts(claims):
+    number, wrong = counts(claims), errata(claims)
+    apart = f" {len(wrong)} more are errata: the paper contradicts itself." if wrong else ""
+    return (
+        f"Among {len(claims) - len(wrong)} claims of the paper, {number[AGREES]} agree with measurements, {number[DIFFERS]} differ, "
+        f"{number[NOT_SETTLED]} are not settled, {number[BY_CONSTRUCTION]} hold by construction, and {number[UNTESTED]} are untested.{apart}"
+    )
+
+
 def sentences(folder, claims):
-    """Three sentences from the records."""
-    number = counts(claims)
-    verdicts = f"{number[AGREES]} agree, {number[DIFFERS]} differ, {number[NOT_SETTLED]} are not settled, and {number[UNTESTED]} are untested"
-    return [
-        _resident(four_methods(folder)),
-        _published(claims),
-        f"Among {len(claims)} claims of the paper, {verdicts}.",
-    ]
+    """Three sentences from the records, and one on errata."""
+    return [_resident(four_methods(folder)), _published(claims), _verdicts(claims)]
 
 
 def method_rows(folder):

@@ -1,21 +1,17 @@
 # SPDX-License-Identifier: MIT
-"""The measures that claims declare: each takes the fields of a claim and a scene, and returns a Measured, or
-raises NotMeasured."""
+"""The measures of cells that claims declare, and how a claim names its cells. A measure takes the fields of a
+claim and a scene, and returns a Measured, or raises NotMeasured. step_measures.py has those of simulations,
+scene_measures.py those of meshes, profiles and the paper's own numbers."""
 
 import json
 import math
 
-import numpy
-import scipy.stats
-
-from .. import resampling
 from ..cell import BOUNDS
 from ..fields import at
 from . import composed
 from .folder import SCENES
 from .methods import found, names
-from .pictures import chunks_of
-from .quantities import NotMeasured, count_of, frame_range
+from .quantities import OF_SCENES, NotMeasured, check_queues, count_of, frame_range
 from .ratios import ratio_of
 from .rules import Measured, exact
 
@@ -31,7 +27,8 @@ class Declared:
 
     def steps(self, side, scene):
         steps = side.get("step") or self.fields.get("step") or ["cells-{scene}"]
-        return [step.replace("{scene}", scene) for step in ([steps] if isinstance(steps, str) else steps)]
+        place = scene.replace(" ", "-")
+        return [step.replace("{scene}", place) for step in ([steps] if isinstance(steps, str) else steps)]
 
     def wanted(self, side, k, usual=None):
         """What a cell has to have: algorithm, preset and settings. usual: the name of a cell for sides
@@ -65,17 +62,19 @@ class Declared:
         for usual in self.fields.get("either", [None]):
             cells = self._first(folder, sides, scene, k, usual)
             if cells:
-                return self._covering(cells)
+                self._check(cells)
+                return cells
         raise NotMeasured(self.fields.get("without", "no records of the cells that this claim compares"))
 
-    def _covering(self, cells):
+    def _check(self, cells):
         first, last = self.fields.get("covers", (math.inf, -math.inf))
         for cell in cells:
             if cell.first > first or cell.last < last:
                 raise NotMeasured(
                     f"measured in frames {cell.first} to {cell.last}; the paper's 500 steps need {first} to {last}"
                 )
-        return cells
+            if self.fields.get("queues") == "whole":
+                check_queues(cell.cells[0])
 
     def simulation(self, folder, scene):
         names = (
@@ -127,9 +126,8 @@ def count(claim, folder, scene, k):
     side = claim.fields["above"]
     [cell] = claim.cells(folder, (side,), scene, k)
     counts = [count_of(own, side["quantity"], frame_range(own)) for own in cell.cells]
-    is_scene = side["quantity"] in ("bodies", "tetrahedra")
     return exact(
-        counts[0] if is_scene else sum(counts),
+        counts[0] if side["quantity"] in OF_SCENES else sum(counts),
         cell.locations[:1],
         f"{cell.frames} of {cell.first}:{cell.last}",
     )
@@ -210,102 +208,30 @@ def digests(claim, folder, scene, k):
     return exact(equal / len(compared), frames=f"{len(compared)} groups")
 
 
-def chunks(claim, folder, scene, k):
-    """A quantity of exported chunks of one order, over that of another."""
-
-    def of(order):
-        exported = chunks_of(folder, order)
-        if exported is None:
-            raise NotMeasured("chunks have not been exported")
-        return getattr(exported, claim.fields["quantity"])()
-
-    below = claim.fields.get("below")
-    value = of(claim.fields["above"]) / (of(below) if below else 1)
-    return exact(value, [f"chunks-{order}.csv" for order in (claim.fields["above"], below) if order])
-
-
-def _on_device(claim, folder, scene):
-    """The simulation of a claim about times of the device."""
-    run = claim.simulation(folder, scene)
-    if run.run["devices"][0]["id"] == "host":
-        raise NotMeasured("simulated on a processor, and its steps were not measured on a device")
-    return run
+def over_fastest(claim, folder, scene, k):
+    """A quantity of a cell over that of the fastest of others, which differ in one setting (`among`)."""
+    own, quantity = claim.fields["above"], claim.fields["above"]["quantity"]
+    [(name, values)] = claim.fields["among"].items()
+    found_ratios = []
+    for value in values:
+        try:
+            first, second = claim.cells(folder, (own, {**own, name: value}), scene, k)
+        except NotMeasured:
+            continue
+        found_ratios.append(ratio_of(first, quantity, second, quantity))
+    if not found_ratios:
+        raise NotMeasured(claim.fields.get("without", f"no records with other values of {name}"))
+    return max(found_ratios, key=lambda measured: measured.value)
 
 
-def _curve(run, name):
-    """A number for each step: of a field, or the seconds of "stage:A+B"."""
-    kind, _, stages = name.partition(":")
-    return (
-        numpy.sum([run.curve(f"stage:{stage}") for stage in stages.split("+")], axis=0)
-        if stages
-        else numpy.array(run.curve(kind), float)
-    )
-
-
-def _of_steps(run, value, low, high):
-    return Measured(
-        float(value),
-        float(low),
-        float(high),
-        len(run.steps),
-        0,
-        "steps of one run",
-        f"{len(run.steps)} steps",
-        (run.location,),
-    )
-
-
-def correlation(claim, folder, scene, k):
-    """Spearman's rank correlation over steps, with the interval of Bonett and Wright (2000, Psychometrika 65,
-    equation 3)."""
-    run = _on_device(claim, folder, scene)
-    x, y = (_curve(run, name) for name in claim.fields["quantity"])
-    good = (x > 0) & (y > 0)
-    if good.sum() < 10 or numpy.quantile(x[good], 0.95) < MIN_RANGE * numpy.quantile(x[good], 0.05):
-        raise NotMeasured("contacts change less than fourfold")
-    rank = scipy.stats.spearmanr(x, y).statistic
-    half = 1.96 * math.sqrt((1 + rank**2 / 2) / (len(x) - 3))
-    middle = math.atanh(max(-1 + 1e-9, min(rank, 1 - 1e-9)))
-    return _of_steps(run, rank, math.tanh(middle - half), math.tanh(middle + half))
-
-
-def deciles(claim, folder, scene, k):
-    """Ninth over first decile of a time over steps."""
-    run = _on_device(claim, folder, scene)
-    values = _curve(run, claim.fields["quantity"])
-    of = lambda own, axis=-1: numpy.quantile(own, 0.9, axis=axis) / numpy.quantile(own, 0.1, axis=axis)
-    return _of_steps(run, of(values), *resampling.bootstrap_interval(of, values))
-
-
-def mean_of_steps(claim, folder, scene, k):
-    run = claim.simulation(folder, scene)
-    return exact(
-        float(numpy.mean(_curve(run, claim.fields["quantity"]))), (run.location,), f"{len(run.steps)} steps"
-    )
-
-
-def median_of_steps(claim, folder, scene, k):
-    run = claim.simulation(folder, scene)
-    return exact(
-        float(numpy.median(_curve(run, claim.fields["quantity"]))), (run.location,), f"{len(run.steps)} steps"
-    )
-
-
-MEASURES = {
-    made.__name__: made
-    for made in (
-        ratio,
-        backends,
-        count,
-        composed_ratio,
-        composed_total,
-        composed_share,
-        composed_step,
-        digests,
-        chunks,
-        correlation,
-        deciles,
-        median_of_steps,
-        mean_of_steps,
-    )
-}
+MEASURES = (
+    ratio,
+    backends,
+    count,
+    composed_ratio,
+    composed_total,
+    composed_share,
+    composed_step,
+    digests,
+    over_fastest,
+)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The names of methods and scenes of statements/names.toml, and the cells that they stand for."""
+"""The names of methods and scenes of statements/names.toml, the cells that they stand for, and the timers of
+the paper's release (statements/timers.toml)."""
 
 import fnmatch
 import functools
@@ -17,6 +18,19 @@ def names():
         return tomllib.load(file)
 
 
+@functools.cache
+def timers():
+    """{quantity: its timers in the release, columns of the paper, and the same thing in our records}."""
+    with open(STATEMENTS / "timers.toml", "rb") as file:
+        return tomllib.load(file)
+
+
+def columns_of(table):
+    """{quantity: its column} of a table of the paper."""
+    found = {name: timer["columns"].get(str(table)) for name, timer in timers().items()}
+    return {name: column for name, column in found.items() if column}
+
+
 def name_of(case):
     """The name of a case's method, such as "paper's schedule", or its algorithm and preset."""
     for name, wanted in names()["cells"].items():
@@ -25,28 +39,43 @@ def name_of(case):
     return f"{case.algorithm} {case.preset}".replace("gproximity", "gProximity")
 
 
-def _origin(case):
-    """The key of a case's scene, or of the scene that its recording comes from."""
-    return case.cells[0].scene.rpartition(",of=")[2]
+def _is_of(key, scene):
+    """Whether the key of a scene, or of a recording of it, is that of a scene of names.toml."""
+    return fnmatch.fnmatch(key.rpartition(",of=")[2], names()["scenes"][scene])
+
+
+def _settings(case):
+    """Settings as asked for. Records from before setting copies name the rule of descent `unlike`
+    `larger`."""
+    settings = case.cells[0].asked
+    is_older = "copies" not in case.settings and settings.get("descent") == "larger"
+    return settings | {"descent": "unlike"} if is_older else settings
+
+
+def _has(own, wanted):
+    return all(str(own.get(name)) == value for name, value in wanted.items())
 
 
 def found(folder, step, scene, wanted):
     """The first case of a step with that scene, algorithm, preset, back end, device and settings; None if
     there is none."""
-    pattern = names()["scenes"][scene]
     for case in folder.cases(step):
         own = {
-            **case.cells[0].asked,
+            **_settings(case),
             "algorithm": case.algorithm,
             "preset": case.preset,
             "backend": case.device["id"].partition(":")[0],
             "device": case.device["name"],
         }
-        if fnmatch.fnmatch(_origin(case), pattern) and all(
-            str(own.get(name)) == value for name, value in wanted.items()
-        ):
+        if _is_of(case.cells[0].scene, scene) and _has(own, wanted):
             return case
     return None
+
+
+def fits(profile, scene, wanted):
+    """Whether a record of 'tandem profile' is of that scene, algorithm, preset and settings."""
+    own = {**profile["settings"], "algorithm": profile["algorithm"], "preset": profile["preset"]}
+    return _is_of(profile["scene"]["key"], scene) and _has(own, wanted)
 
 
 def four(folder, scene, k, steps):

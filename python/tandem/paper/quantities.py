@@ -2,33 +2,48 @@
 """Quantities of a record of a cell, by the names that claims use: times in seconds for each round, and
 counts.
 
-Times: "frame" (whole frames), "breakdown" (whole frames of replays that time every command, of which all
-stages are parts), "narrow" (the narrow phase of the paper's Table 3: whole frames without transform, refit
-and broad phase), "stages:A+B" (sums of stages: device time, or host time of stages without it), "largest:A+B"
-(the largest of these stages), "host work:A+B" (host work with these names). Counts: "launches",
-"launches:A+B" of stages, "release launches" (as the paper's release counts), "bytes:A+B", "bytes for each
-launch:A+B" (launches of all stages), "counter:NAME", "contacts", "pairs", "body pairs", "bodies",
-"tetrahedra"."""
+Names of statements/timers.toml are what the paper's release times by that name, such as "narrow". Other
+times: "frame" (whole frames), "breakdown" (whole frames of replays that time every command, of which all
+stages and phases are parts), "stages:A+B" (sums of stages: device time, or host time of stages without it),
+"largest:A+B" and "sum:A+B" (the largest and the sum of these timers), "host work:A+B" and "phases:A+B" (what
+the host did, and regions of a frame, with these names). Counts: "launches", "launches:A+B" of stages,
+"release launches" (as the paper's release counts), "bytes:A+B", "bytes for each launch:A+B" (launches of all
+stages), "counter:NAME", "contacts", "pairs", "body pairs", "batches" (of one frame because memory is short),
+"bodies", "vertices", "tetrahedra"."""
 
 import statistics
 
 from ..fields import at
+from .methods import timers
 
-TIMES = ("frame", "breakdown", "narrow", "stages", "largest", "host work")
+TIMES = ("frame", "breakdown", "stages", "largest", "sum", "host work", "phases")
 LISTS = {
     "contacts": "contacts",
     "pairs": "candidate_pairs",
     "body pairs": "body_pairs",
 }  # fields of `work` with a count for each frame
-BEFORE_NARROW = ("transform", "refit", "broad")
+OF_SCENES = ("bodies", "vertices", "tetrahedra")
+ITEM_BYTES = 12  # of a pair of nodes in a queue
+OLDER = "records of an older program, without "
+REGIONS = {"phases": "the phases that the release times", "host_work": "the names of host work"}
 
 
 class NotMeasured(Exception):
     """The records lack what a claim needs. The message is the reason for the verdict "untested"."""
 
 
+def resolved(name):
+    """The quantity that a name of timers.toml stands for; other names are quantities."""
+    timer = timers().get(name)
+    if timer is None:
+        return name
+    if "ours" not in timer:
+        raise NotMeasured(f"no record of a cell has {name}")
+    return timer["ours"]
+
+
 def is_time(name):
-    return name.partition(":")[0] in TIMES
+    return resolved(name).partition(":")[0] in TIMES
 
 
 def frame_range(cell):
@@ -73,13 +88,17 @@ def _stage(cell, name, frames):
     return _each_round(cell, stage["device_ns"] if stage["device_ns"]["median"] else stage["host_ns"], frames)
 
 
-def _host_work(cell, name, frames):
-    if "host_work" not in cell.record:
-        raise NotMeasured("records of an older program, without the names of host work")
-    if _places(cell, frames) is not None:
-        raise NotMeasured("host work is not recorded for each frame")
-    work = cell.record["host_work"].get(name)
-    return {} if work is None else _each_round(cell, work["host_ns"], frames)
+def _region(cell, field, name, frames):
+    """Times of host work or of a phase with that name."""
+    regions = cell.record.get(field)
+    if not regions:
+        raise NotMeasured(OLDER + REGIONS[field])
+    times = regions.get(name, {}).get("host_ns")
+    if times is None:
+        return {}
+    if _places(cell, frames) is not None and not times.get("frames"):
+        raise NotMeasured("host work and phases are not recorded for each frame")
+    return _each_round(cell, times, frames)
 
 
 def _combined(parts, combine):
@@ -93,19 +112,19 @@ def _combined(parts, combine):
 
 def seconds_by_round(cell, name, frames):
     """A time by the number of its round, disturbed rounds included; empty if the record has no such stage."""
-    kind, _, rest = name.partition(":")
+    kind, _, rest = resolved(name).partition(":")
     names = rest.split("+")
     if kind == "frame":
         return _whole_frames(cell, frames)
     if kind == "breakdown":
         return _each_round(cell, cell.record["breakdown_ns"], frames)
-    if kind == "narrow":
-        whole = _whole_frames(cell, frames)
-        other = _combined([_stage(cell, stage, frames) for stage in BEFORE_NARROW], sum)
-        return {number: max(seconds - other.get(number, 0), 0) for number, seconds in whole.items()}
-    if kind == "host work":
-        return _combined([_host_work(cell, work, frames) for work in names], sum)
-    return _combined([_stage(cell, stage, frames) for stage in names], max if kind == "largest" else sum)
+    if kind in ("largest", "sum"):
+        parts = [seconds_by_round(cell, one, frames) for one in names]
+        return _combined(parts, max if kind == "largest" else sum)
+    if kind == "stages":
+        return _combined([_stage(cell, stage, frames) for stage in names], sum)
+    field = kind.replace(" ", "_")
+    return _combined([_region(cell, field, one, frames) for one in names], sum)
 
 
 def _in_frames(values, cell, frames):
@@ -126,11 +145,13 @@ def _of_stages(cell, stages, what):
 
 def count_of(cell, name, frames):
     """A count of a record in these frames. Raises NotMeasured."""
-    kind, _, rest = name.partition(":")
-    if kind in ("bodies", "tetrahedra"):
-        return getattr(cell, kind)
+    kind, _, rest = resolved(name).partition(":")
+    if kind in OF_SCENES:
+        return cell.record["scene"][kind]
     if kind in LISTS:
         return _in_frames(cell.work(LISTS[kind]), cell, frames)
+    if kind == "batches":
+        return at(cell.record, "work", "batches") / cell.frames
     if kind == "bytes for each launch":
         return _of_stages(cell, rest.split("+"), "bytes") / _of_stages(cell, (), "launches")
     _whole_only(cell, frames)
@@ -142,16 +163,20 @@ def count_of(cell, name, frames):
     return found
 
 
+def _groups_of(cell):
+    """Work-groups of gProximity, each with a queue. With sizes=release they are as many as 2048 work-items
+    for each compute unit make, the release's rule for its global size."""
+    groups = int(cell.settings.get("groups") or 0)
+    if groups == 0 and cell.settings.get("sizes") == "release":
+        local = int(cell.settings["group_size"])
+        groups = max(2048 * cell.record["devices"][0]["compute_units"], local) // local
+    return groups
+
+
 def batch_size(cell):
-    """Body pairs of a batch of gProximity; 0 if a batch has all. With sizes=release a batch has a body pair
-    for each group, of which the release launches as many as 2048 work-items for each compute unit make (its
-    rule for the global size)."""
-    settings = cell.settings
-    size = int(settings.get("batch") or 0)
-    if size == 0 and settings.get("sizes") == "release":
-        local = int(settings["group_size"])
-        size = max(2048 * cell.record["devices"][0]["compute_units"], local) // local
-    return size
+    """Body pairs of a batch of gProximity; 0 if a batch has all. With sizes=release each group has one."""
+    size = int(cell.settings.get("batch") or 0)
+    return size or (_groups_of(cell) if cell.settings.get("sizes") == "release" else 0)
 
 
 def batches_of(cell, frames):
@@ -162,3 +187,15 @@ def batches_of(cell, frames):
         return None
     places = _places(cell, frames)
     return sum(-(-count // size) for count in (pairs if places is None else (pairs[i] for i in places)))
+
+
+def check_queues(cell):
+    """Raises NotMeasured if a bounded queue array makes every launch of gProximity end after one round, as
+    the release's does not. The release ends a launch when two rounds and a full local queue might not fit
+    into a queue any more; a local queue holds at least a round."""
+    groups, size = _groups_of(cell), cell.settings.get("queue_bytes", "device")
+    if cell.algorithm != "gproximity" or not groups or size == "device":
+        return
+    round_ = int(cell.settings["group_size"])
+    if int(size) // (ITEM_BYTES * groups) <= 2 * round_ + max(round_, int(cell.settings["local_queue"])):
+        raise NotMeasured(f"with queue_bytes={size}, every launch of gProximity ends after one round")

@@ -100,7 +100,8 @@ def _of_frames(top, bottom, make):
     if not sum(below):
         return make((math.nan,) * 3, 0, "disturbed samples only")
     if len(known) == len(top) and len(above) >= LEAST_FRAMES:
-        return make(resampling.ratio_of_sums(below, above), len(above), "frames, one sample each")
+        *found, independent = resampling.ratio_of_sums(below, above)
+        return make(found, independent, f"blocks of neighbouring frames, one round of each of {len(above)}")
     value = sum(above) / sum(below)
     return make((value, value, value), 1, "one sample")
 

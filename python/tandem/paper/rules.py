@@ -5,7 +5,9 @@ import dataclasses
 import math
 
 AGREES, DIFFERS, NOT_SETTLED, UNTESTED = "agrees", "differs", "not settled", "untested"
-VERDICTS = (AGREES, DIFFERS, NOT_SETTLED, UNTESTED)
+BY_CONSTRUCTION = "by construction"  # our inputs or code keep the rule, whatever is measured
+ERRATUM = "erratum"  # the paper contradicts itself; counted with no other verdict
+VERDICTS = (AGREES, DIFFERS, NOT_SETTLED, UNTESTED, BY_CONSTRUCTION)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -58,7 +60,8 @@ def limits(rule, paper=()):
 
 
 def judged(measured, rule, paper=()):
-    """(verdict, reason) of a value."""
+    """(verdict, reason) of a value. `proves` of a rule: why a value that keeps it proves nothing, such as a
+    mean within limits of each single value."""
     allowed = limits(rule, paper)
     if allowed is None:
         return UNTESTED, "the paper has no number for this scene"
@@ -67,7 +70,7 @@ def judged(measured, rule, paper=()):
     least, most = allowed
     factor = rule.get("borderline", 1)
     if least <= measured.low and measured.high <= most:
-        return AGREES, ""
+        return (NOT_SETTLED, rule["proves"]) if "proves" in rule else (AGREES, "")
     if measured.high < least / factor or measured.low > most * factor:
         return DIFFERS, ""
     within = measured.high < least or measured.low > most
@@ -81,6 +84,7 @@ def together(verdicts, how):
     if not counted or (how == "any" and AGREES not in counted and len(counted) < len(verdicts)):
         return UNTESTED
     first, last = (AGREES, DIFFERS) if how == "any" else (DIFFERS, AGREES)
-    if first in counted:
-        return first
-    return NOT_SETTLED if NOT_SETTLED in counted else last
+    for verdict in (first, ERRATUM, NOT_SETTLED, BY_CONSTRUCTION):
+        if verdict in counted:
+            return verdict
+    return last

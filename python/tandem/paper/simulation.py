@@ -110,18 +110,25 @@ def _stages(cell):
     return found
 
 
-def _with_frame(step, seconds, stages):
-    """A step whose contacts are found in those seconds and stages."""
+def _with_frame(step, phases, stages):
+    """A step whose contacts are found in these stages. phases: seconds of the whole frame, and of
+    initialization and narrow phase as the release times them, unless the records lack these."""
     broad = stages.get("broad") or {"device_ns": 0, "host_ns": 0}
-    broad_ns = broad["device_ns"] or broad["host_ns"]
     host = {part: step["host_ns"][part] for part in SOLVER}
-    whole = {
-        "step": 1e9 * seconds + sum(host.values()),
-        "broad": broad_ns,
-        "narrow": max(1e9 * seconds - broad_ns, 0),
-        **host,
-    }
-    return {**step, "stages": stages, "host_ns": {**step["host_ns"], **whole}}
+    found = {name: 1e9 * seconds for name, seconds in phases.items()}
+    whole = found.pop("frame")
+    times = {"step": whole + sum(host.values()), "broad": broad["device_ns"] or broad["host_ns"], **host}
+    times["narrow"] = max(whole - times["broad"], 0)
+    return {**step, "stages": stages, "host_ns": {**step["host_ns"], **times, **found}}
+
+
+def _phases(cell):
+    """{time: {frame: seconds}} of a cell's whole frames and phases."""
+    found = {"frame": frames_of(cell, "frame")}
+    try:
+        return found | {name: frames_of(cell, name) for name in ("initialization", "narrow")}
+    except NotMeasured:
+        return found
 
 
 def composed(run, cell):
@@ -130,17 +137,20 @@ def composed(run, cell):
     stands for, over their mean."""
     steps = {step["step"]: step for step in run.steps}
     check_contacts(cell, steps)
-    seconds, stages = frames_of(cell, "frame"), _stages(cell)
+    seconds, stages = _phases(cell), _stages(cell)
     made = copy.copy(run)
     made.is_composed, made.name, made.location = (
         True,
-        f"composed-{run.name.removeprefix('sim-')}",
+        f"composed-{run.label}",
         f"{run.location} {cell.locations[0]}",
     )
-    frames = sorted(set(seconds) & set(steps))
+    frames = sorted(set(stages) & set(steps))
     made.steps = [
-        {**_with_frame(steps[frame], seconds[frame], stages[frame]), "weight": weight}
-        for frame, weight in zip(frames, weights_of(frames))
+        {
+            **_with_frame(steps[i], {name: own[i] for name, own in seconds.items()}, stages[i]),
+            "weight": weight,
+        }
+        for i, weight in zip(frames, weights_of(frames))
     ]
     made.run = {
         **run.run,

@@ -2,13 +2,12 @@
 """Tables 3, 6 and 7: whole simulations. Runs of one scene are compared over the steps that all of them
 have."""
 
-import statistics
-
-from .folder import STEPS_OF_PAPER, paper_table
+from .folder import PAPERS_SOLVER, STEPS_OF_PAPER, paper_table
+from .methods import columns_of, timers
 from .simulation import composed_share_of
 from .tables import Table, ordered, paper_rows, ratio, written
 
-KINDS = ("sim-", "host-", "serial-", "parallel-")
+KINDS = (PAPERS_SOLVER, "host-", "serial-", "parallel-")
 COMMON = (
     "Rows of one scene are sums over the same steps from step 0, as many as its shortest run has (column steps). The paper's are of 500 steps. Rows with 'composed' "
     "are frames of that recording, measured with the published path, beside the solver of the recording; each counts for the steps nearest to it, and their minutes are 500 times the mean step."
@@ -25,18 +24,22 @@ def common_runs(folder, kinds=KINDS):
     return [run.first(shortest[run.label]) for run in runs]
 
 
+def _without_phases(simulation):
+    """Seconds of initialization and narrow phase of steps that were not timed as the release does: transform
+    and refit on the device, and the rest."""
+    start = simulation.stage("transform") + simulation.stage("refit")
+    return {"initialization": start, "narrow": simulation.host("narrow") - start}
+
+
 def percentages(simulation):
     """Percent of the total time by part, from sums over all steps, as in the paper's Table 3."""
-    total = simulation.host("step")
-    start = simulation.stage("transform") + simulation.stage("refit")
-    parts = {
-        "solver": simulation.host("solve") + simulation.host("assemble"),
-        "initialization": start,
-        "broad": simulation.host("broad"),
-        "narrow": simulation.host("narrow") - start,
-        "contact_reduction": simulation.host("reduce"),
+    known = {} if "initialization" in simulation.steps[0]["host_ns"] else _without_phases(simulation)
+    seconds = lambda name: sum(map(simulation.host, timers()[name].get("step", [name])))
+    return {
+        column: 100 * (known[name] if name in known else seconds(name)) / seconds("total")
+        for name, column in columns_of(3).items()
+        if name != "total"
     }
-    return {f"{name}_percent": 100 * seconds / total for name, seconds in parts.items()}
 
 
 def data_path(simulation):
@@ -102,53 +105,15 @@ def _convergence_note(runs):
     )
 
 
-def _solver_note(folder):
-    """Runs with the solver settings of the paper beside the same steps with ours."""
-    texts = []
-    for run in folder.simulations("solver-"):
-        ours = folder.simulation(f"sim-{run.name.removeprefix('solver-')}")
-        count = min(len(run.steps), len(ours.steps)) if ours else 0
-        if count:
-            pairs = [
-                (
-                    *(
-                        statistics.fmean(step[name] for step in one.steps)
-                        for name in ("iterations", "contacts_kept")
-                    ),
-                    max(step["deepest_m"] for step in one.steps),
-                )
-                for one in (run.first(count), ours.first(count))
-            ]
-            passes, kept, deepest = (
-                f"{written(theirs)} instead of {written(own)}" for theirs, own in zip(*pairs)
-            )
-            texts.append(
-                f"{run.scene}, {count} steps: {passes} passes and {kept} contacts kept on average, deepest overlap {deepest} m"
-            )
-    return (
-        (
-            f"With a relative tolerance of 0.01 and no start from the last step's forces (--dynamics paper): {'; '.join(texts)}.",
-        )
-        if texts
-        else ()
-    )
-
-
 def table3(folder):
-    columns = (
-        "solver_percent",
-        "initialization_percent",
-        "broad_percent",
-        "narrow_percent",
-        "contact_reduction_percent",
-    )
+    columns = [column for name, column in columns_of(3).items() if name != "total"]
     rows = paper_rows(paper_table(3), {"total_min": "total_min", **{name: name for name in columns}})
     rows += [
         _row(run, total_min=_minutes(run, run.host("step")), **percentages(run))
         for run in common_runs(folder) + folder.compositions()
     ]
     for row in rows:
-        row["collision_percent"] = sum(row[name] or 0 for name in columns[1:])
+        row["collision_percent"] = sum(row[name] or 0 for name in columns if name != "solver_percent")
         row.setdefault("steps", STEPS_OF_PAPER)
     return Table(
         3,
@@ -156,11 +121,11 @@ def table3(folder):
         ordered(rows),
         (
             COMMON,
-            "The paper's are means of ten runs of its published path; ours are one run each. Our solver, including the assembly of its rows, runs on "
-            "one thread, as the paper's does. It has no relative tolerance and starts from the last step's forces; the paper's stops at a relative "
-            "tolerance of 0.01.",
-            *_convergence_note(folder.simulations("sim-")),
-            *_solver_note(folder),
+            "The paper's are means of ten runs of its published path; ours are one run each, with the settings of the paper's solver, on one thread as the "
+            "paper's. No record says what else ran on the machine beside the solver, so that minutes and shares are provisional.",
+            "Composed rows have initialization and narrow phase as the release times them, if the records have these phases. Other rows have transform and refit on the "
+            "device as initialization.",
+            *_convergence_note(folder.simulations(PAPERS_SOLVER)),
             *_composition_note(folder),
         ),
     )
@@ -193,7 +158,7 @@ def table6(folder):
 def table7(folder):
     names = ("transform", "refit", "traverse", "contact")
     rows = paper_rows(paper_table(7), {f"{name}_min": f"{name}_min" for name in names})
-    runs = common_runs(folder, ("sim-", "host-", "serial-")) + folder.compositions()
+    runs = common_runs(folder, (PAPERS_SOLVER, "host-", "serial-")) + folder.compositions()
     rows += [_row(run, **{f"{name}_min": _minutes(run, run.stage(name)) for name in names}) for run in runs]
     for row in rows:
         row["traverse_over_contact"] = ratio(row["traverse_min"], row["contact_min"])

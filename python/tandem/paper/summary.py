@@ -5,7 +5,7 @@ browser."""
 from .. import markdown
 from ..text_lines import visible
 from . import headline
-from .rules import UNTESTED
+from .rules import AGREES, DIFFERS, ERRATUM, UNTESTED
 from .tables import written
 
 MOST_SCENES = 5
@@ -26,14 +26,17 @@ def _ours(claim):
     values = "; ".join(_value(line, unit) for line in tested[:MOST_SCENES]) + (
         "; and more" if len(tested) > MOST_SCENES else ""
     )
-    return values if unit == "%" else f"{values} {unit}"
+    said = f": {claim.lines[0].reason}" if claim.verdict == ERRATUM else ""
+    return (values if unit == "%" else f"{values} {unit}") + said
+
+
+def _verdict(claim):
+    is_provisional = "provisional" in claim.fields and claim.verdict in (AGREES, DIFFERS)
+    return f"**{claim.verdict}**" + (" (provisional)" if is_provisional else "")
 
 
 def write(folder, claims):
-    rows = [
-        [claim.fields["says"], claim.fields["where"], f"**{claim.verdict}**", _ours(claim)]
-        for claim in claims
-    ]
+    rows = [[claim.fields["says"], claim.fields["where"], _verdict(claim), _ours(claim)] for claim in claims]
     text = [
         "# The paper's claims and our records",
         "",
