@@ -243,6 +243,9 @@ class GpuSteps(unittest.TestCase):
         self.assertEqual(done.returncode, 2)
         self.assertRegex(done.stdout, r"(?m)^ +\d+ +tests +510 s +unit, hard and conformance tests")
         steps, machine = read_steps(SOURCE / "scripts/gpu/steps.json", {}), Machine(PROGRAM, SOURCE)
+        release = [step for step in steps if step.group == "release"]
+        self.assertLess(sum(step.seconds for step in release), 22 * 60)
+        self.assertLess(max(step.seconds for step in release), 540)
         self.assertEqual(len({step.name for step in steps}), len(steps))
         for need in {need for step in steps for need in step.needs}:
             machine.missing(need)

@@ -94,10 +94,10 @@ def duration_text(seconds):
     return f"{seconds:.0f} s" if seconds < 90 else f"{seconds / 60:.0f} min"
 
 
-def listed(steps, is_done=lambda step: False):
-    """A line for each step; the parts of an entry share one."""
+def listed(steps, is_done=lambda step: False, apart=False):
+    """A line for each step; the parts of an entry, and the entries of a group, share one unless `apart`."""
     lines = []
-    for name, group in itertools.groupby(steps, lambda step: step.group or step.name):
+    for name, group in itertools.groupby(steps, lambda step: not apart and step.group or step.name):
         parts = list(group)
         durations = [step.seconds for step in parts]
         state = "unknown" if None in durations else f"{sum(durations):g} s"
