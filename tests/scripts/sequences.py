@@ -250,6 +250,7 @@ class GpuSteps(unittest.TestCase):
         for need in {need for step in steps for need in step.needs}:
             machine.missing(need)
         runs = [step for step in steps if step.command[:2] == ("tandem", "run")]
+        runs = [step for step in runs if not step.command[2].endswith(".json")]  # a plan names its devices
         self.assertGreater(len(runs), 40)
         for step in runs:
             words = re.sub(r" --(out|memory) \S+| --resume|,cubql", "", " ".join(step.command[1:]))
