@@ -30,20 +30,17 @@ from tandem import markdown
 PAGES = RESULTS.parent / "README.md", FOLDER / "README.md"
 METHODS = {
     "tiled": "tiled",
-    "other": "tiled, other slabs",
-    "chunked": "chunked, grouped",
-    "sah": "chunked, grouped, tiled's trees",
-    "paper": "chunked, the paper's schedule",
-    "fair": "gproximity fair",
-    "chunked published": "chunked published",
-    "gproximity published": "gproximity published",
+    "chunked": "grouped schedule",
+    "paper": "paper's schedule",
+    "fair": "gProximity",
+    "leaf_query": "leaf queries",
 }
-USUAL = ("tiled", "other", "chunked", "sah", "fair")
-PUBLISHED = ("chunked", "paper", "fair", "chunked published", "gproximity published")
 DRAWN = {
-    "tiled": ("#0b5394", "o", "tiled"),
-    "chunked": ("#6b7885", "s", "chunked, grouped"),
-    "fair": ("#96753a", "D", "gProximity"),
+    "tiled": ("#0b5394", "o"),
+    "chunked": ("#6b7885", "s"),
+    "fair": ("#96753a", "D"),
+    "leaf_query": ("#4b7d4f", "v"),
+    "paper": ("#a0404a", "P"),
 }
 
 
@@ -59,14 +56,8 @@ def scenes():
 
 
 def method_of(record):
-    settings, preset, algorithm = record["settings"], record["preset"], record["algorithm"]
-    if preset == "published":
-        return f"{algorithm} published"
-    if algorithm == "gproximity":
-        return "fair"
-    if algorithm == "tiled":  # "asked" has slabs if the cell of slabs=usual took another value
-        return "tiled" if "slabs" in record["asked"] else "other"
-    return "sah" if settings["builder"] == "sah" else "paper" if settings["schedule"] == "item" else "chunked"
+    algorithm, preset = record["algorithm"], record["preset"]
+    return preset if preset in ("paper", "fair") else algorithm
 
 
 class Answer:
@@ -82,66 +73,67 @@ class Answer:
             self.cells[scene, record["settings"]["k"], method_of(record)] = Cell(record)
         self.origin = " and ".join(sorted({cell.origin for cell in self.cells.values()}))
 
-    def _table(self, methods, cell_text, needed=()):
-        """A table with one row per scene and k that has one of the needed methods, and one column per method."""
-        rows = []
-        for scene in self.scenes:
-            for k in ("8", "18"):
-                own = {method: self.cells.get((scene, k, method)) for method in METHODS}
-                if any(own[method] for method in needed or methods):
-                    rows.append([scene, k, *(cell_text(own, method) for method in methods)])
+    def _table(self, methods, cell_text):
+        """A table with one row per scene and k, and one column per method."""
+        rows = [
+            [scene, k, *(cell_text({m: self.cells[scene, k, m] for m in METHODS}, m) for m in methods)]
+            for scene in self.scenes
+            for k in ("8", "18")
+        ]
         return markdown.table(["scene", "k", *map(METHODS.get, methods)], rows).rstrip("\n")
 
-    def _times(self, part, methods, needed=()):
-        shown = lambda own, method: with_width(getattr(own[method], part).values()) if own[method] else ""
-        return self._table(methods, shown, needed)
+    def _times(self, part):
+        """Milliseconds per frame; the least median of a row is bold."""
+
+        def shown(own, method):
+            medians = {name: median_interval(list(getattr(own[name], part).values())) for name in own}
+            written = with_width(getattr(own[method], part).values())
+            return f"**{written}**" if medians[method] == min(medians.values(), key=sum) else written
+
+        return self._table(METHODS, shown)
 
     def _ratios(self, part):
         def shown(own, method):
-            if not (own[method] and own["tiled"]):
-                return ""
             ratio = paired(own[method], own["tiled"], part)
             return ("≈ " if ratio.low <= 1 <= ratio.high else "") + with_interval(ratio)
 
-        return self._table(USUAL[1:], shown)
+        return self._table([method for method in METHODS if method != "tiled"], shown)
 
     def tables(self):
         """Texts by the names of their marks."""
         return {
             "first": self.first_lines(),
-            "frame": self._times("total", USUAL),
-            "walk": self._times("walk", USUAL),
+            "frame": self._times("total"),
+            "walk": self._times("walk"),
             "frame ratios": self._ratios("total"),
             "walk ratios": self._ratios("walk"),
-            "published": self._times("total", PUBLISHED, ("paper", "chunked published")),
             "kernels": kernel_table(records(FOLDER / "profile.jsonl")),
         }
 
     def first_lines(self):
         """The answer as a list, for whole frames and, unless stated otherwise, k = 18."""
         at = lambda scene, method: self.cells[scene, "18", method]
-        others = ("chunked", "fair")
+        others = [method for method in METHODS if method != "tiled"]
         lead = lambda scene: min(
             (paired(at(scene, other), at(scene, "tiled")) for other in others), key=lambda ratio: ratio.value
         )
         grouped = [paired(at(scene, "fair"), at(scene, "chunked")) for scene in self.scenes]
-        schedule = {
-            key: paired(self.cells[*key[:2], "fair"], cell)
+        schedule = [
+            paired(self.cells[*key[:2], "fair"], cell)
             for key, cell in self.cells.items()
             if key[2] == "paper"
-        }
-        ks = " and ".join(sorted({k for _, k, _ in schedule}, key=int))
+        ]
         low, high = claimed()
         return f"""\
 - **Fastest: the tiled walk** (`tiled`, tiles of 32 boxes against 32).
   A whole frame with contacts is {span(map(lead, self.scenes))} times as fast
-  as with the better of `chunked` and gProximity (k = 18, everything on the device).
+  as with the best of the four other methods (k = 18, everything on the device).
   Measured on one {self.origin}.
   Brackets are 95 % intervals.
-- **Ours, grouped** (`chunked` by default) has the paper's chunks and another schedule: a work-group shares its walks.
+- **The grouped schedule** (`chunked` by default) has the paper's chunks and another schedule: a work-group shares its walks.
   It {against_gproximity(grouped, "scenes")}
-- **The paper's own schedule**, in which each work-item walks its own seeds, was measured in {len({scene for scene, _, _ in schedule})} of these scenes (k = {ks}).
-  It {against_gproximity(schedule.values(), "cells")}
+- **The paper's schedule**, in which each work-item walks its own seeds, was measured with k = 8 and 18.
+  It {against_gproximity(schedule, "cells")}
 - **The paper's claim**, {low:.0f} to {high:.0f} times less time than gProximity, is one about uploads: most of that factor is gProximity uploading
   [nearly empty queues](results/paper/README.md). [Each claim has a verdict](results/h200/paper/README.md).
 - **Right**: {sum(self.right)} of {len(self.right)} cells of the plan have the reference's pairs and contacts, bit for bit.
@@ -150,7 +142,7 @@ class Answer:
 
     def fastest(self, scene):
         """The drawn method that is told to be the fastest in a scene."""
-        own = {name: self.cells[scene, "18", method] for method, (_, _, name) in DRAWN.items()}
+        own = {METHODS[method]: self.cells[scene, "18", method] for method in DRAWN}
         best = min(own, key=lambda name: own[name].median_ms)
         is_clear = all(paired(cell, own[best]).low > 1 for name, cell in own.items() if name != best)
         return best if is_clear else "not told apart"
@@ -166,8 +158,8 @@ class Answer:
 
     def _draw_row(self, ax, row, scene):
         """Draws medians with intervals of the methods in one scene."""
-        for method, (colour, marker, name) in DRAWN.items():
-            cell = self.cells[scene, "18", method]
+        for method, (colour, marker) in DRAWN.items():
+            cell, name = self.cells[scene, "18", method], METHODS[method]
             ax.plot(
                 median_interval(list(cell.total.values())), [row, row], color=colour, linewidth=3, alpha=0.6
             )
@@ -179,7 +171,7 @@ class Answer:
                 )
 
     def draw(self, path):
-        """Draws milliseconds per frame of three methods with intervals, one row per scene."""
+        """Draws milliseconds per frame of each method with intervals, one row per scene."""
         import matplotlib
 
         matplotlib.use("svg")
@@ -198,7 +190,7 @@ class Answer:
             ax.set_yticks(range(len(self.scenes)), self.scenes)
             ax.set_ylim(len(self.scenes) - 0.5, -0.7)
             label = "milliseconds per frame, contacts included, k = 18; bars: 95 % intervals\n" + self.origin
-            ax.set(xscale="log", xlim=(0.05, 10), xlabel=label)
+            ax.set(xscale="log", xlim=(0.05, 100), xlabel=label)
             ax.set_title(self.title(), loc="left", fontweight="bold", fontsize=10.5)
             ax.xaxis.set_major_formatter("{x:g}")
             ax.grid(axis="x", alpha=0.25)
