@@ -4,7 +4,7 @@
 from ..pages.groups import Group, groups
 from ..pages.markup import element, items, link
 from ..pages.tables import Column, Row, table
-from .rules import AGREES, DIFFERS, NOT_SETTLED, UNTESTED
+from .rules import AGREES, BY_CONSTRUCTION, DIFFERS, ERRATUM, NOT_SETTLED, UNTESTED
 from .tables import written
 
 MARKS = {AGREES: "good", DIFFERS: "bad", NOT_SETTLED: "open"}
@@ -12,10 +12,9 @@ MEANINGS = {
     AGREES: "The whole 95 % interval of our value keeps the rule of the claim.",
     DIFFERS: "The whole 95 % interval of our value breaks the rule of the claim.",
     NOT_SETTLED: "The interval contains a limit of the rule, or there is only one sample, or other work disturbed every sample.",
-    "by construction": "The claim follows from the inputs or from the code, so that no measurement could contradict it.",
+    BY_CONSTRUCTION: "The claim follows from the inputs or from the code, so that no measurement could contradict it.",
     UNTESTED: "Our records do not measure the same thing.",
 }
-ERRATUM = "erratum"  # the verdict of a claim that the paper contradicts
 CONTRADICTED = "The paper contradicts itself. No count of verdicts has these."
 WORDS = "Words in parentheses are ours. An interval has 95 %."
 
