@@ -26,6 +26,7 @@ case $1 in
   --version) echo "tandem 1 (commit $(cat "$(dirname "$0")/commit"))" ;;
   devices) echo '[{"reason": "cuda: no driver", "devices": []},
     {"reason": null, "devices": [{"id": "host", "driver": "none", "double": true}, {"id": "opencl:3", "driver": "PoCL 5", "double": false}]}]' ;;
+  run) [[ "$*" == *"--algorithm walk --device host"* ]] || { echo "tandem: no such algorithm" >&2; exit 2; } ;;
   say) echo "$*" | tee -a said ;;
   fail) [ -e mended ] || { echo trying; echo "no luck" >&2; exit 1; } ;;
   wait) [ "$2" != ignoring ] || trap '' TERM; touch begun; while [ ! -e go ]; do sleep 0.02; done ;;
@@ -193,6 +194,8 @@ class Sequences(unittest.TestCase):
             "double opencl:3": "the device has no double precision",
             "driver PoCL": "",
             "driver Oclgrind": "no device of Oclgrind; there are: host, opencl:3; cuda: no driver",
+            "algorithm walk host": "",
+            "algorithm other host": "tandem: no such algorithm",
             "program bash": "",
             "program no_such": "program no_such is missing",
             "module json": "",

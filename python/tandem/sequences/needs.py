@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What a step may need of the machine: "device cuda:0", "double cuda:0" (a device with double precision),
-"driver PoCL" (a device whose driver has this name), "program mpirun", "module torch" (of this Python), "file *.frames"."""
+"driver PoCL" (a device whose driver has this name), "algorithm cubql cuda:0" (one that the program has for this
+device), "program mpirun", "module torch" (of this Python), "file *.frames"."""
 
 import functools
 import glob
@@ -53,6 +54,12 @@ class Machine:
 
     def _double(self, what):
         return self._device(what) or ("" if self.devices[what]["double"] else NO_DOUBLE)
+
+    def _algorithm(self, what):
+        name, device = what.split()
+        words = ["run", "plates", "--frames", "0", "--algorithm", name, "--device", device, "--dry-run"]
+        done = subprocess.run([self.program, *words], capture_output=True, text=True)
+        return "" if done.returncode == 0 else done.stderr.strip().splitlines()[-1]
 
     def _program(self, what):
         return "" if shutil.which(what) else f"program {what} is missing"
