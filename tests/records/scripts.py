@@ -187,13 +187,14 @@ class Scripts(ScriptCase):
         presets = set()
         for name in (
             "h200/plan.jsonl",
+            "h200/paper/records/cells-plates.jsonl",
             "../tests/records/chosen.jsonl",
             "h100x2/shares.jsonl",
             "h100x2/passage/hosts.jsonl",
             "h200/profile.jsonl",
             "h200/paper/records/sim-meteor.jsonl",
         ):
-            records = committed(name)
+            records = [record for record in committed(name) if record.get("kind") != "verdict"]
             presets.update(record["preset"] for record in records if record.get("algorithm") == "chunked")
             records = records if LONG else records[:: -(-len(records) // 20)]
             path = self.work / "older.jsonl"

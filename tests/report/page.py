@@ -127,7 +127,7 @@ class Pages(ReportCase):
         self.assertEqual(self.browser.run(more), [])
         self.browser.run("document.querySelector('.sorts tbody:not([hidden]) summary').click()")
         [details] = self.browser.run(more)
-        self.assertIn("--quiet --resume", details)
+        self.assertIn("--resume --out plan.jsonl", details)
 
     def test_failed_wrong_and_markup(self):
         failed, wrong, older, named = (json.loads(json.dumps(self.plan[i])) for i in (0, 1, 2, 3))
