@@ -21,7 +21,7 @@ sys.path.insert(0, str(FOLDER.parent))
 from measured import RESULTS, frames_of, records
 from tandem import markdown
 
-FILES = (*sorted((RESULTS / "h100x2").glob("*.jsonl")), RESULTS / "h200/plan.jsonl", FOLDER / "ranks.jsonl")
+FILES = (*sorted((RESULTS / "h100x2").glob("*.jsonl")), FOLDER / "ranks.jsonl")
 GROUP = "tiled resident, k = 18, slabs=three"  # of the table of coefficients
 STAGES = {
     "refit": ("refit",),

@@ -39,7 +39,7 @@ OF_CONDITION = (
 )
 OF_SAMPLING = ("cells", "seed", "repeat", "noise", "seconds", "spent_seconds", "converged", "drift")
 NULLABLE_PATHS = {
-    *((name,) for name in ("conditions", "ranks", "partition")),
+    *((name,) for name in ("conditions", "ranks", "partition", "steps")),
     *(("environment", name) for name in ("processor", "sources")),
     *(("error", name) for name in ("truth", "rounding")),
     *(("error", "truth", name) for name in ("contacts", "drift")),

@@ -67,7 +67,7 @@ class Drawing(unittest.TestCase):
             tandem.plot_cells,
             tandem.plot_stages,
             tandem.plot_frames,
-            lambda r: tandem.plot_sweep(r, "slabs"),
+            lambda r: tandem.plot_sweep(r, "k"),
         ):
             with self.assertWarnsRegex(UserWarning, "1 of .* cells failed, are wrong"):
                 draw(records)
