@@ -214,7 +214,7 @@ class Conformance : public OnDevice {};
 /// A device and a part of the rows: compilation takes most of the time, and parts can run in parallel.
 class CoveringArray : public testing::TestWithParam<std::tuple<std::string, std::size_t>> {
 public:
-    static constexpr std::size_t parts = 14;
+    static constexpr std::size_t parts = 18;
 
 protected:
     static void cover(std::string_view algorithm_name, std::uint64_t seed, std::uint32_t bodies) {
