@@ -131,7 +131,7 @@ def parsed(arguments):
     add("-o", "--output", required=True, metavar="FOLDER", help=folder)
     device = "the device to measure on (default: opencl:0)"
     add("--device", default="opencl:0", metavar="DEVICE", help=device)
-    size = "scenes: small, for a processor (15 minutes on two cores), or full, those of the paper, for a GPU (default: small)"
+    size = "scenes: small, for a processor (10 minutes on two cores), or full, those of the paper, for a GPU (default: small)"
     add("--size", default="small", metavar="small|full", help=size)
     steps = (
         "only these of the steps that --dry-run lists: FIRST:LAST or N; or tableN, figureN or a name, with the steps "
