@@ -86,13 +86,18 @@ void LocalSampler::add_dropped(std::size_t index) {
 
 /// Rules that need boundary faces of both tetrahedra take the depth along faces that need not be in contact.
 /// The first frame with a contact beyond its body is enough, because contacts are many.
-void LocalSampler::find_deep_contact(std::size_t index, const FrameResult& result) {
+void LocalSampler::find_deep_contact(std::size_t index, const FrameResult& result, const Digest& digest) {
     if (!makes_contacts(out_.settings) || boundaries_needed(out_.settings[parameters::contact_rule]) != 2)
         return;
     if (!decided(cell_.team, !out_.deep_contact)) return;
-    const auto contacts = result.download_contacts();
-    if (!is_first(cell_.team)) return;
-    out_.deep_contact = deepest_beyond_body(scene_, *range_.frame(index), range_.first() + index, contacts);
+    auto& searched = references_.searched(index, digest);
+    if (decided(cell_.team, !searched)) {
+        const auto contacts = result.download_contacts();
+        if (!is_first(cell_.team)) return;
+        searched.emplace(
+            deepest_beyond_body(scene_, *range_.frame(index), range_.first() + index, contacts));
+    }
+    if (is_first(cell_.team)) out_.deep_contact = searched->deepest;
 }
 
 /// Truths stores errors by digest, so that it downloads an answer only when no other cell had the same one.
@@ -149,7 +154,7 @@ void LocalSampler::check_answer(std::size_t index, const FrameResult& result, co
                 digest = expected;
         compare(index, result, digest, contacts);
         add_dropped(index);
-        find_deep_contact(index, result);
+        find_deep_contact(index, result, contacts);
     }
     if (options.truths != nullptr && result.has_pairs() && has_truth(*options.truths))
         add_errors(*options.truths, index, result, digest, contacts,

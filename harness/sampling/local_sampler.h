@@ -26,7 +26,7 @@ private:
     void compare(std::size_t index, const FrameResult& result, const Digest& digest, const Digest& contacts);
     ReferenceDigests expected_digests(std::size_t index);
     void add_dropped(std::size_t index);
-    void find_deep_contact(std::size_t index, const FrameResult& result);
+    void find_deep_contact(std::size_t index, const FrameResult& result, const Digest& digest);
     void check_answer(std::size_t index, const FrameResult& result, const CheckOptions& options);
     void add_errors(Truths& truths, std::size_t index, const FrameResult& result, const Digest& digest,
                     const Digest& contacts, const Report& report);

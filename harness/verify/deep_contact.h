@@ -18,6 +18,11 @@ struct DeepContact {
     double size = 0;  ///< diagonal of the box around the smaller body
 };
 
+/// The result of a search among a frame's contacts.
+struct SearchedContacts {
+    std::optional<DeepContact> deepest; ///< empty if no contact is deeper than the smaller body
+};
+
 /// The deepest of these contacts of frame number `number`; empty if none is deeper than the smaller body. The
 /// bodies' sizes are those of the frame.
 std::optional<DeepContact> deepest_beyond_body(const Scene& scene, const Frame& frame, std::size_t number,

@@ -58,6 +58,10 @@ const ReferenceAnswer& References::answer(const Geometry& geometry, const Contac
     return last_->second;
 }
 
+std::optional<SearchedContacts>& References::searched(std::size_t index, const Digest& contacts) {
+    return searched_[{index, contacts.count, contacts.a, contacts.b}];
+}
+
 ReferenceDigests References::digests(const Geometry& geometry, const ContactSettings& contacts,
                                      std::size_t index) {
     const Key key{geometry, contacts, index};

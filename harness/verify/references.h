@@ -2,9 +2,12 @@
 #pragma once
 
 #include "harness/frames/frames.h"
+#include "harness/verify/deep_contact.h"
 #include "harness/verify/verification_cache.h"
 #include "harness/verify/reference.h"
 
+#include <array>
+#include <map>
 #include <optional>
 
 namespace tandem {
@@ -29,6 +32,10 @@ public:
     const ReferenceAnswer& answer(const Geometry& geometry, const ContactSettings& contacts,
                                   std::size_t index);
 
+    /// Where the deep contact of an answer's contacts to that frame is kept; empty until the caller has
+    /// searched them. Equal answers of several cells are then searched once.
+    std::optional<SearchedContacts>& searched(std::size_t index, const Digest& contacts);
+
 private:
     using Key = std::tuple<Geometry, ContactSettings, std::size_t>;
     std::string cache_key(const Key& key) const;
@@ -38,6 +45,7 @@ private:
     VerificationCache cache_;
     std::vector<std::pair<Key, ReferenceDigests>> digests_;
     std::optional<std::pair<Key, ReferenceAnswer>> last_;
+    std::map<std::array<std::uint64_t, 4>, std::optional<SearchedContacts>> searched_; ///< by frame, digest
 };
 
 } // namespace tandem
