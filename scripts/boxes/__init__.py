@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""What scripts/external counts: readers of public data, boxes, pairs of boxes."""
+"""What scripts/external and scripts/peers count: readers of public data and of frames, boxes, pairs of boxes."""

@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""What ends scripts/external with exit code 2."""
+"""What ends a script."""
 
 
 class BadData(Exception):
-    """Files, options or a program that cannot be used; the text is one line."""
+    """Files, options or a program that cannot be used; the text is one line. `code`: the exit code."""
+
+    def __init__(self, text, code=2):
+        super().__init__(text)
+        self.code = code

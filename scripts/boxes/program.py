@@ -24,7 +24,8 @@ def output(program, *arguments):
         ) from None
     if done.returncode:
         lines = [line for line in done.stderr.splitlines() if line.startswith("tandem: ")]
-        raise BadData(lines[-1] if lines else f"{program}: exit code {done.returncode}")
+        code = done.returncode if done.returncode in (1, 2) else 3
+        raise BadData(lines[-1] if lines else f"{program}: exit code {done.returncode}", code)
     return done.stdout
 
 

@@ -327,6 +327,10 @@ class External(ScriptCase):
             ("tandem: ", "-", *self.files, "--pairs", "vertex-face", "--device", "nothing", *program),
         ):
             self.refused("external", expected, *arguments)
+        failing = self.work / "failing"
+        failing.write_text("#!/bin/sh\necho 'tandem: the device is gone' >&2\nexit 3\n")
+        failing.chmod(0o755)
+        self.refused("external", "the device is gone", "-", *self.files, "--program", failing, code=3)
 
     def test_counts_of_the_page(self):
         """The table of the page has the counts of the script."""
