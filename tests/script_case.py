@@ -8,6 +8,7 @@ import importlib.machinery
 import importlib.util
 import io
 import json
+import lzma
 import os
 import pathlib
 import re
@@ -75,7 +76,9 @@ def script(name, *arguments, address_space=None):
 
 
 def committed(name):
-    return [json.loads(line) for line in (SOURCE / "results" / name).read_text().splitlines()]
+    opened = lzma.open if name.endswith(".xz") else open
+    with opened(SOURCE / "results" / name, "rt") as file:
+        return [json.loads(line) for line in file]
 
 
 @contextlib.contextmanager

@@ -97,7 +97,7 @@ class Cell:
         self.samples, self.rounds = _rounds(record)
         self.is_partial = sampling.get("interrupted") is True
         self.seed = sampling["seed"] if isinstance(sampling.get("seed"), int) else None
-        reasons = _disturbed(record)
+        reasons = disturbed_rounds(record)
         self.disturbed = frozenset(reasons.keys() & self.rounds.keys())
         self.reason = next(iter(reasons.values()), "")
         self.all_rounds, self.disturbed_rounds = len(self.rounds), len(self.disturbed)
@@ -316,7 +316,7 @@ def _rounds(record):
     return len(samples), {number: statistics.median(rounds[number]) for number in sorted(rounds)}
 
 
-def _disturbed(record):
+def disturbed_rounds(record):
     """{round: reason} of the disturbed rounds."""
     found = (record.get("conditions") or {}).get("disturbed") or []
     return {needed(one, "round", kind="integer"): needed(one, "why") for one in found}

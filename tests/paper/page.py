@@ -55,6 +55,16 @@ class PaperPage(unittest.TestCase):
         html = self.written({"cells-plates": [self.cell()], "array": [self.cell(commit="d" * 40)]})
         self.assertIn(f"{'c' * 12}, which have the same sources, and of one card", text_of(html))
 
+    def test_simulations_that_were_recorded_before_are_no_second_build(self):
+        recorded, old = made.simulation("funnel", [made.step(0)]), {"commit": "d" * 40, "dirty": False}
+        files = {"cells-plates": [self.cell()], "solver-funnel": recorded}
+        text = text_of(self.written(files, journal=[{}, old]))
+        self.assertIn(f"All measurements are of commit {'c' * 12} and of one card, GPU abcdef.", text)
+        self.assertIn(f"Simulations were recorded on a processor by commit {'d' * 12}.", text)
+        self.assertNotIn("Warning:", text)
+        other = {"cells-plates": [self.cell()], "sim-funnel": recorded}
+        self.assertIn("Warning: the records are of 2 builds", text_of(self.written(other, journal=[{}, old])))
+
     def test_several_builds_or_cards_are_a_warning(self):
         cells = {"cells-plates": [self.cell()], "sim-funnel": made.simulation("funnel", [made.step(0)])}
         for files, says in (

@@ -192,7 +192,7 @@ class Scripts(ScriptCase):
             "h100x2/shares.jsonl",
             "h100x2/passage/hosts.jsonl",
             "h200/profile.jsonl",
-            "h200/paper/records/sim-meteor.jsonl",
+            "simulations/solver-meteor.jsonl.xz",
         ):
             records = [record for record in committed(name) if record.get("kind") != "verdict"]
             presets.update(record["preset"] for record in records if record.get("algorithm") == "chunked")
@@ -249,7 +249,7 @@ class Scripts(ScriptCase):
             ),
         )
         kernels = json.loads(profile.read_text())["kernels"]
-        steps = committed("h200/paper/records/sim-meteor.jsonl")
+        steps = committed("simulations/solver-meteor.jsonl.xz")
         text = self.output_of(
             "tables",
             profile,

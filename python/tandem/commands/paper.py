@@ -150,10 +150,13 @@ def parsed(arguments):
     return options
 
 
-def check_device(program, device):
-    """Raises BadUse unless the program has this device, and it is one."""
+def check_is_one(device):
     if device == "all" or any(letter in device for letter in ",+"):
         raise BadUse(f"--device {device}: the paper's scenes run on one device; name exactly one")
+
+
+def check_device(program, device):
+    """Raises BadUse unless the program has this device."""
     words = ["run", "plates", "--frames", "0", "--algorithm", "chunked", "--dry-run", "--device", device]
     done = subprocess.run([program, *words], capture_output=True, text=True)
     if done.returncode:
@@ -162,7 +165,7 @@ def check_device(program, device):
 
 def _make(options, program):
     if not options.draw_only:
-        check_device(program, options.device)
+        check_is_one(options.device)
     if not options.measure_only and not options.dry_run:
         # Fails before anything is measured.
         check_packages("tandem paper", PACKAGES, ", or give --measure-only")
@@ -175,6 +178,8 @@ def _make(options, program):
     if options.dry_run:
         measuring.list_steps(runner, steps)
         return 0
+    if any(measuring.runs_on(steps[number], options.device) for number in numbers):
+        check_device(program, options.device)
     if options.again:
         for number in numbers:
             runner.forget(steps[number])

@@ -8,7 +8,7 @@ import os
 import pathlib
 
 from .. import lines
-from ..cell import Cell, each
+from ..cell import disturbed_rounds, each
 from .quantities import NotMeasured, batches_of, frame_range
 from .simulation import Simulation, composed
 
@@ -115,22 +115,30 @@ class Folder:
         self.failed = [name for name, step in steps.items() if step["exit"] != 0]
         self._cases = {}
 
-    def _json_lines(self, name):
-        """Objects of a file of JSON lines, which may be compressed: then it is NAME.xz."""
-        path, opened = self.path / name, open
-        if not path.exists():
-            path, opened = path.with_name(f"{path.name}.xz"), lzma.open
-        if not path.exists():
+    def stored(self, name):
+        """Path of a file of the folder, which may be compressed: then it is NAME.xz. None without it."""
+        paths = (self.path / name, self.path / f"{name}.xz")
+        return next((path for path in paths if path.exists()), None)
+
+    def text_lines(self, name):
+        """Lines of a file of the folder, an incomplete last one left out; [] without the file."""
+        path = self.stored(name)
+        if path is None:
             return []
         try:
-            with opened(path, "rt") as file:
-                return [json.loads(line) for line in file if line.endswith("\n")]
-        except ValueError:
-            raise lines.RecordError(
-                f"{path}: a line is not JSON; measure the step again with --again"
-            ) from None
+            with (lzma.open if path.suffix == ".xz" else open)(path, "rt") as file:
+                return [line for line in file if line.endswith("\n")]
         except (lzma.LZMAError, EOFError):
             raise lines.RecordError(f"{path}: is not a whole file of xz; compress it again") from None
+
+    def _json_lines(self, name):
+        text = self.text_lines(name)
+        try:
+            return [json.loads(line) for line in text]
+        except ValueError:
+            raise lines.RecordError(
+                f"{self.stored(name)}: a line is not JSON; measure the step again with --again"
+            ) from None
 
     def named(self, beginning):
         """Names of completed steps with that beginning, in their order."""
@@ -176,14 +184,14 @@ class Folder:
         """(step, number of disturbed rounds, number of rounds) of the steps with disturbed rounds."""
         found = []
         for path in sorted((self.path / "records").glob("*.jsonl")):
-            cells = [
-                Cell(line)
+            measured = [
+                line
                 for line in self._json_lines(f"records/{path.name}")
                 if line.get("conditions") and line.get("total_ns")
             ]
-            count = sum(cell.disturbed_rounds for cell in cells)
+            count = sum(len(disturbed_rounds(line)) for line in measured)
             if count:
-                found.append((path.stem, count, sum(cell.all_rounds for cell in cells)))
+                found.append((path.stem, count, sum(line["sampling"]["rounds"] for line in measured)))
         return found
 
     def composition(self, run, step):
@@ -205,8 +213,8 @@ class Folder:
         place = f"records/{step}.jsonl"
         lines_of_file = self._json_lines(place)
         has_run = any(line["kind"] == "run" for line in lines_of_file)
-        suffix = "" if (self.path / place).exists() else ".xz"
-        return Simulation(lines_of_file, step, place + suffix) if has_run else None
+        stored = self.stored(place)
+        return Simulation(lines_of_file, step, f"records/{stored.name}") if has_run else None
 
     def profiles(self, step):
         """(line, record) of the profiles of a step."""

@@ -21,6 +21,11 @@ def steps_of(size, device):
     return read_steps(PLANS / f"{size}.json", {"device": device})
 
 
+def runs_on(step, device):
+    """Whether a step needs that device; exports do not."""
+    return device in step.command or (step.plan or {}).get("devices") == device
+
+
 def shown_in(step):
     """The tables and figures that a step's description names: {"table3", "figure9", ...}."""
     found = set()

@@ -8,7 +8,7 @@ from ..pages.tables import Column, Row, table
 from . import headline
 from .claim_groups import claim_groups, counted, errata, records_links
 from .methods import FOUR
-from .provenance import builds_of, cards_of, is_uniform, origins
+from .provenance import apart, builds_of, cards_of, is_uniform, origins
 from .tables import written
 
 STYLE = """tr.ours { font-weight: 600; }
@@ -25,6 +25,7 @@ METHODS = (
 )
 METHODS_TITLE = "Four methods, everything on the device"
 MIXED = "A ratio between records of two steps may also compare two builds or two cards, and a composed value may mix them."
+RECORDED = "Contacts of a step are the same on every device and with every build; claims about times of whole simulations are provisional."
 
 
 def _table(made):
@@ -104,15 +105,29 @@ def _commits(commits):
     return f"commit{'s' if len(commits) > 1 else ''} {' and '.join(commits)}"
 
 
+def _recorded(found):
+    """A line about simulations that were recorded before."""
+    if not found:
+        return ""
+    commits = dict.fromkeys(origin.commit for origin in found)
+    return element(
+        "p",
+        f"Simulations were recorded on a processor by {_commits(list(commits))}. {RECORDED}",
+        class_="quiet",
+    )
+
+
 def _provenance(folder):
-    """One line if all records are of one build and one card, and a warning with a table if not."""
-    found = origins(folder)
+    """One line if all measurements are of one build and one card, and a warning with a table if not."""
+    found, recorded = apart(origins(folder))
     builds, cards = builds_of(found), cards_of(found)
     if is_uniform(found):
         [commits] = builds.values()
         where = f"one card, {cards[0]}" if cards else "one processor"
         same = ", which have the same sources," if len(commits) > 1 else ""
-        return element("p", f"All records are of {_commits(commits)}{same} and of {where}.", class_="quiet")
+        which = "measurements" if recorded else "records"
+        line = f"All {which} are of {_commits(commits)}{same} and of {where}."
+        return [element("p", line, class_="quiet"), _recorded(recorded)]
     counts = [f"{len(builds)} builds of tandem"] if len(builds) > 1 else []
     counts += [f"{len(cards)} cards"] if len(cards) > 1 else []
     rows = {}
@@ -123,7 +138,8 @@ def _provenance(folder):
     title = "Which step is of which build and card"
     said = element("p", element("strong", "Warning: "), f"the records are of {' and '.join(counts)}. {MIXED}")
     shown = table(title, ["build", "card", "steps"], listed, heading=False)
-    return element("div", said, folded("provenance", title, shown), class_="warning", role="note")
+    warning = element("div", said, folded("provenance", title, shown), class_="warning", role="note")
+    return [warning, _recorded(recorded)]
 
 
 def _section_of(name, made, draw):

@@ -122,9 +122,8 @@ def figure6(folder):
 class Chunks:
     """The chunks of the largest mesh in a file of 'tandem export --chunks'."""
 
-    def __init__(self, path):
-        with open(path, newline="") as file:
-            rows = list(csv.DictReader(file))
+    def __init__(self, text_lines):
+        rows = list(csv.DictReader(text_lines))
         counts = {}
         for row in rows:
             counts[row["mesh"]] = counts.get(row["mesh"], 0) + 1
@@ -163,8 +162,8 @@ class Chunks:
 
 
 def chunks_of(folder, order):
-    path = folder.path / f"chunks-{order}.csv"
-    return Chunks(path) if path.exists() and folder.named(f"chunks-{order}") else None
+    text_lines = folder.text_lines(f"chunks-{order}.csv") if folder.named(f"chunks-{order}") else []
+    return Chunks(text_lines) if text_lines else None
 
 
 def show(ax, chunks, numbers, boxes=True):

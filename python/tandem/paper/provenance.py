@@ -6,6 +6,7 @@ import json
 import lzma
 
 DIGITS = 12  # of a commit, as in steps.jsonl
+SIMULATIONS = ("solver-", "part-")  # beginnings of the names of steps that simulate with the paper's solver
 
 
 @dataclasses.dataclass(frozen=True)
@@ -72,6 +73,15 @@ def builds_of(found):
     for origin in found:
         builds.setdefault(origin.build, {})[origin.commit] = None
     return {build: list(commits) for build, commits in builds.items()}
+
+
+def apart(found):
+    """(measured, recorded): the Origins without, and with those of simulations that a processor has recorded for
+    the measurements on a card. Their contacts are those of any build and device."""
+    if not cards_of(found):
+        return found, []
+    recorded = [origin for origin in found if origin.step.startswith(SIMULATIONS) and not origin.cards]
+    return [origin for origin in found if origin not in recorded], recorded
 
 
 def is_uniform(found):

@@ -15,6 +15,8 @@ class Simulation:
     """The steps of the last session of a file of 'tandem simulate --record'."""
 
     is_composed = False
+    left_out = 0  # frames of a composition of which all rounds are disturbed
+    is_disturbed = False  # whether these are all of its frames
 
     def __init__(self, lines_of_file, name, location):
         self.name, self.location = name, location
@@ -131,10 +133,16 @@ def _phases(cell):
         return found
 
 
+def _undisturbed(cell):
+    """The frames of a cell with a round that other work did not disturb."""
+    clean = [own for own in cell.cells if own.rounds.keys() - own.disturbed]
+    return {frame for own in clean for frame in range(own.first_frame, frame_range(own)[1] + 1)}
+
+
 def composed(run, cell):
     """The steps of `run` that are frames of `cell`: the cell finds the contacts, and the other parts are
-    those of the run. Raises NotMeasured if the cell has other contacts. The weight of a step says how many it
-    stands for, over their mean."""
+    those of the run. Disturbed frames are left out unless all are. Raises NotMeasured if the cell has other
+    contacts. The weight of a step says how many it stands for, over their mean."""
     steps = {step["step"]: step for step in run.steps}
     check_contacts(cell, steps)
     seconds, stages = _phases(cell), _stages(cell)
@@ -145,6 +153,9 @@ def composed(run, cell):
         f"{run.location} {cell.locations[0]}",
     )
     frames = sorted(set(stages) & set(steps))
+    clean = sorted(_undisturbed(cell) & set(frames))
+    made.left_out, made.is_disturbed = len(frames) - len(clean), not clean
+    frames = clean or frames
     made.steps = [
         {
             **_with_frame(steps[i], {name: own[i] for name, own in seconds.items()}, stages[i]),

@@ -35,7 +35,8 @@ def _of_steps(run, statistic, *curves):
     part = resampling.part(*curves, in_order=True)
     *found, samples = resampling.of_parts(statistic, [part])
     basis = f"blocks of {part.block} neighbouring steps"
-    return Measured(*found, samples, 0, basis, f"{len(run.steps)} steps", (run.location,))
+    known = 0 if run.is_disturbed else samples
+    return Measured(*found, known, run.left_out, basis, f"{len(run.steps)} steps", (run.location,))
 
 
 def _rank_correlation(rows):
@@ -50,7 +51,11 @@ def correlation(claim, folder, scene, k):
     run = _on_device(claim, folder, scene)
     x, y = (_curve(run, name) for name in claim.fields["quantity"])
     good = (x > 0) & (y > 0)
-    if good.sum() < LEAST_STEPS or numpy.quantile(x[good], 0.95) < MIN_RANGE * numpy.quantile(x[good], 0.05):
+    if good.sum() < LEAST_STEPS:
+        raise NotMeasured(
+            f"{good.sum()} steps with contacts were measured, of the {LEAST_STEPS} that a rank correlation needs"
+        )
+    if numpy.quantile(x[good], 0.95) < MIN_RANGE * numpy.quantile(x[good], 0.05):
         raise NotMeasured("contacts change less than fourfold")
     return _of_steps(run, _rank_correlation, x, y)
 
