@@ -10,7 +10,7 @@ import unittest
 from tests.paper.drawn import page_of_committed
 from tests.program import LONG, SOURCE
 from tests.report.case import ReportCase
-from tests.script_case import called, loaded
+from tests.script_case import called, committed, loaded
 
 AXE = SOURCE / ".cache/pages/axe_playwright_python/axe.min.js"
 OPEN = "document.querySelectorAll('details').forEach(one => one.open = true); "
@@ -44,11 +44,16 @@ class Access(ReportCase):
             ("tests/records/accuracy", 8),
             ("results/h200/profile", 1),
             ("results/h200/ceilings", 9),
-            ("results/h200/paper/records/sim-funnel", 40),
+            ("results/simulations/solver-funnel", 40),
             ("results/h200/paper/records/thresholds", 9),
         ):
-            path = SOURCE / f"{name}.jsonl"
-            files.append(self.write(path.name, map(json.loads, path.read_text().splitlines()[:count])))
+            path = next(SOURCE.glob(f"{name}.jsonl*"))
+            files.append(
+                self.write(
+                    f"{path.name.partition('.')[0]}.jsonl",
+                    committed(f"../{path.relative_to(SOURCE)}")[:count],
+                )
+            )
         self.check(self.report(*files, "--scene", "plates", "--frames", "20:22", "--contacts"))
 
     def test_pages_that_need_no_scripts(self):

@@ -8,6 +8,7 @@ from tests.program import SOURCE, Case, tandem
 from tests.report.browser import Browser
 
 RECORDS = SOURCE / "results/h200"
+SIMULATIONS = SOURCE / "results/simulations"
 CHOOSE = """(() => {{ const choice = [...document.querySelectorAll('#{} label')].find(one => one.textContent.startsWith({}))
   .querySelector('select, input'); choice.value = {}; choice.dispatchEvent(new Event({})); }})()"""
 

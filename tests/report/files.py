@@ -14,6 +14,7 @@ import unittest.mock
 
 from tests.program import LONG, PROGRAM, SOURCE, Case
 from tests.report.case import short
+from tests.script_case import committed
 
 from tandem import lines
 from tandem.errors import BadUse, OutputError
@@ -129,10 +130,10 @@ class Reading(Case):
         """Each part of records of every kind is removed or replaced: they are shown, or one line names the
         position."""
         chance = random.Random(20180606)
-        names = ("plan", "profile", "ceilings", "paper/records/sim-funnel")
+        names = ("h200/plan", "h200/profile", "h200/ceilings", "../tests/records/accuracy")
         shown = refused = 0
-        for source in [*(H200 / f"{name}.jsonl" for name in names), SOURCE / "tests/records/accuracy.jsonl"]:
-            record = short(json.loads(source.read_text().splitlines()[-1]), 2, ("breakdown_ns", "chosen"))
+        for source in [*(f"{name}.jsonl" for name in names), "simulations/solver-funnel.jsonl.xz"]:
+            record = short(committed(source)[-1], 2, ("breakdown_ns", "chosen"))
             for damaged in self.damaged(record, chance):
                 path = self.file(damaged)
                 try:

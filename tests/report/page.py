@@ -8,7 +8,7 @@ import lzma
 import sys
 
 from tests.program import LONG, SOURCE, tandem
-from tests.report.case import RECORDS, ReportCase, Shown
+from tests.report.case import RECORDS, SIMULATIONS, ReportCase, Shown
 
 from tandem.report.cells import COLUMNS
 from tandem.report.reading import MAX_CELLS
@@ -54,7 +54,7 @@ class Pages(ReportCase):
         return self.text("#cells [role=status]")
 
     def test_all_committed_records(self):
-        simulations = (RECORDS / f"paper/records/sim-{name}.jsonl" for name in ("colosseum", "funnel"))
+        simulations = (SIMULATIONS / f"solver-{name}.jsonl.xz" for name in ("colosseum", "funnel"))
         cells = RECORDS / "plan.jsonl", RECORDS / "slabs.jsonl", SOURCE / "tests/records/accuracy.jsonl"
         others = RECORDS / "profile.jsonl", RECORDS / "ceilings.jsonl"
         shown = self.shown(*cells, *others, *simulations, "--scene", "plates", "--frames", "20:23")

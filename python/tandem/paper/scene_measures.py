@@ -80,7 +80,12 @@ def at_the_ceiling(claim, folder, scene, k):
             left_out = len(disturbed_rounds(record))  # times of a profile are medians of all rounds
             place = f"records/{step}.jsonl:{line}"
             return Measured(
-                *values, 0 if left_out else rounds, left_out, "rounds", f"frames {frames['first']}:{frames['last']}", (place,)
+                *values,
+                0 if left_out else rounds,
+                left_out,
+                "rounds",
+                f"frames {frames['first']}:{frames['last']}",
+                (place,),
             )
     raise NotMeasured("no profile of this kernel")
 
