@@ -14,8 +14,6 @@ from tandem import cell
 from tandem.fields import frames_of
 from tandem.resampling import Ratio, median_interval, paired_ratio
 
-WALK = ("refit", "seed", "traverse", "balance")
-
 
 def records(path):
     """The records of cells of a file."""
@@ -30,18 +28,24 @@ def agrees(record):
 
 
 class Cell(cell.Cell):
-    """A cell with milliseconds per frame by round: `total` of samples, and `walk`, the device time of refit and
-    walk, from replays that time every command."""
+    """A cell with milliseconds per frame by round (`total`), and times of stages, from replays that time every
+    command."""
 
     @functools.cached_property
     def total(self):
         return {number: ns / self.frames / 1e6 for number, ns in self.rounds.items()}
 
-    @functools.cached_property
-    def walk(self):
-        stages = [self.record["stages"][name] for name in WALK if name in self.record["stages"]]
-        walks = zip(*(stage["device_ns"]["samples"] for stage in stages))
-        return {number: sum(own) / self.frames / 1e6 for number, own in enumerate(walks)}
+    def stage_us(self, names):
+        """Microseconds of the device per frame in these stages."""
+        stages = self.record["stages"]
+        return (
+            sum(stages[name]["device_ns"]["median"] for name in names if name in stages) / self.frames / 1e3
+        )
+
+    @property
+    def launches(self):
+        """Per frame."""
+        return sum(stage["launches"] for stage in self.record["stages"].values()) / self.frames
 
     @property
     def origin(self):
@@ -58,11 +62,10 @@ def scene_name(scene):
     return rest.partition(",")[0] if kind == "recording" else pathlib.Path(kind).stem
 
 
-def paired(cell, base, part="total"):
+def paired(cell, base):
     """The Ratio of the times of a cell to those of `base`, over their common rounds."""
-    above, below = getattr(cell, part), getattr(base, part)
-    common = [number for number in above if number in below]
-    return paired_ratio([below[number] for number in common], [above[number] for number in common])
+    common = [number for number in cell.total if number in base.total]
+    return paired_ratio([base.total[number] for number in common], [cell.total[number] for number in common])
 
 
 def inverse(ratio):

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """answer.py: writes the tables between <!-- answer: NAME --> and <!-- end --> of README.md and of
-results/h200/README.md, and draws answer.svg. Scenes are those of plan.json, numbers those of plan.jsonl.
+the pages of results/h200, and draws answer.svg. Scenes are those of plan.json, numbers those of plan.jsonl.
 Medians have the half width of their 95 % interval. Ratios are medians over rounds that were measured side by
 side."""
 
@@ -27,7 +27,9 @@ from measured import (
 )
 from tandem import markdown
 
-PAGES = RESULTS.parent / "README.md", FOLDER / "README.md"
+PAGES = RESULTS.parent / "README.md", FOLDER / "README.md", FOLDER / "kernels.md"
+STAGES = {"refit": ["refit"], "walk": ["seed", "traverse", "balance"], "contacts": ["contact"]}
+OTHERS = "rest of the device"
 METHODS = {
     "tiled": "tiled",
     "chunked": "grouped schedule",
@@ -82,19 +84,35 @@ class Answer:
         ]
         return markdown.table(["scene", "k", *map(METHODS.get, methods)], rows).rstrip("\n")
 
-    def _times(self, part):
+    def _times(self):
         """Milliseconds per frame; the least median of a row is bold."""
 
         def shown(own, method):
-            medians = {name: median_interval(list(getattr(own[name], part).values())) for name in own}
-            written = with_width(getattr(own[method], part).values())
+            medians = {name: median_interval(list(own[name].total.values())) for name in own}
+            written = with_width(own[method].total.values())
             return f"**{written}**" if medians[method] == min(medians.values(), key=sum) else written
 
         return self._table(METHODS, shown)
 
-    def _ratios(self, part):
+    def _stages(self):
+        """Microseconds of the device per frame by stage, k = 18, and launches; without the paper's schedule, whose
+        walk is nearly all of its time."""
+        rows = []
+        for scene in self.scenes:
+            for method, name in METHODS.items():
+                if method == "paper":
+                    continue
+                cell = self.cells[scene, "18", method]
+                us = {stage: cell.stage_us(stages) for stage, stages in STAGES.items()}
+                whole = cell.stage_us(cell.record["stages"])
+                rest = whole - sum(us.values())
+                numbers = [*us.values(), rest, whole]
+                rows.append([scene, name, *map(text, numbers), text(cell.launches)])
+        return markdown.table(["scene", "method", *STAGES, OTHERS, "all", "launches"], rows).rstrip("\n")
+
+    def _ratios(self):
         def shown(own, method):
-            ratio = paired(own[method], own["tiled"], part)
+            ratio = paired(own[method], own["tiled"])
             return ("≈ " if ratio.low <= 1 <= ratio.high else "") + with_interval(ratio)
 
         return self._table([method for method in METHODS if method != "tiled"], shown)
@@ -103,10 +121,9 @@ class Answer:
         """Texts by the names of their marks."""
         return {
             "first": self.first_lines(),
-            "frame": self._times("total"),
-            "walk": self._times("walk"),
-            "frame ratios": self._ratios("total"),
-            "walk ratios": self._ratios("walk"),
+            "frame": self._times(),
+            "frame ratios": self._ratios(),
+            "stages": self._stages(),
             "kernels": kernel_table(records(FOLDER / "profile.jsonl")),
         }
 
