@@ -103,7 +103,8 @@ bool flush_output() {
 }
 
 int finish_output(int code) {
-    if (flush_output()) return code;
+    // The reader of a pipe that is closed has all that it wanted, as in "tandem run ... | head".
+    if (flush_output() || output_error == EPIPE) return code;
     print_message("tandem: standard output could not be written ({})\n", std::strerror(output_error));
     return 3;
 }

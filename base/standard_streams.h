@@ -80,7 +80,7 @@ void print_message_from_every_rank(fmt::format_string<Values...> format, Values&
 bool flush_output();
 
 /// The exit code of a program that would end with `code`. Returns 3 and prints an error message when any of
-/// the output of put() could not be written.
+/// the output of put() could not be written, unless the reader has closed the pipe.
 int finish_output(int code);
 
 } // namespace tandem

@@ -62,6 +62,15 @@ def words_of(arguments):
     return words
 
 
+def right_cells(text):
+    """How many cells the output of 'tandem run' calls right: "all 3 right: ...", "A, B: right: ..." or "right: ..."."""
+    found = 0
+    for names in re.findall(r"(?m)^(.*)\bright: no pair missing or extra", text):
+        count = re.fullmatch(r"all (\d+) ", names)
+        found += int(count[1]) if count else names.count(",") + 1
+    return found
+
+
 def tandem(*arguments, environment=None, address_space=None):
     """Returns (exit code, standard output, lines of standard error without PoCL's own). `address_space`
     limits the bytes of address space. A run takes one sample per cell unless the arguments choose otherwise:

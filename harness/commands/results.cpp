@@ -2,11 +2,15 @@
 #include "harness/commands/results.h"
 
 #include "base/standard_streams.h"
+#include "base/text_lines.h"
 #include "harness/plans/key.h"
 #include "harness/record/table/table.h"
 #include "harness/record/answer.h"
 
+#include <algorithm>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <iterator>
 
 namespace tandem {
 
@@ -18,6 +22,46 @@ std::vector<Row> rows_of(const Task& task, std::span<const CellResult* const> re
     return rows;
 }
 
+namespace {
+
+/// Texts in their order, each with the names of the cells that have it.
+using Shared = std::vector<std::pair<std::string, std::vector<std::string>>>;
+
+void add(Shared& shared, const std::string& text, const std::string& name) {
+    auto found = std::ranges::find(shared, text, &Shared::value_type::first);
+    if (found == shared.end()) found = shared.insert(shared.end(), {text, {}});
+    found->second.push_back(name);
+}
+
+void put_paragraph(const std::string& text) { put_text(paragraph(text, 2, output_columns())); }
+
+/// "all 3 right: ...", or a line for each different answer.
+void print_answers(std::span<const CellResult* const> measured) {
+    Shared answers;
+    for (const auto* result : measured)
+        add(answers, answer_text(result->measurement), describe(*result->cell));
+    for (const auto& [text, names] : answers) {
+        if (answers.size() > 1)
+            put_paragraph(fmt::format("{}: {}", fmt::join(names, ", "), text));
+        else
+            put_paragraph(names.size() > 1 ? fmt::format("all {} {}", names.size(), text) : text);
+    }
+}
+
+void print_notes(std::span<const CellResult* const> measured, const Scene& scene) {
+    Shared warnings;
+    for (const auto* result : measured)
+        for (const auto& line : answer_warnings(result->measurement, scene))
+            add(warnings, line, describe(*result->cell));
+    for (const auto& [text, names] : warnings) put("{}\n", text);
+    if (const auto text = disturbed_text(measured); !text.empty()) put_paragraph(text);
+    for (const auto* result : measured)
+        if (const auto text = doubts(*result); !text.empty())
+            put_paragraph(fmt::format("{}: {}", describe(*result->cell), text));
+}
+
+} // namespace
+
 void print_results(std::span<const Row> rows, const std::vector<Verdict>& verdicts, const Task& task,
                    std::span<const CellResult* const> results) {
     if (rows.empty()) return;
@@ -26,13 +70,13 @@ void print_results(std::span<const Row> rows, const std::vector<Verdict>& verdic
              + result_tables(rows, verdicts, task.scene,
                              {task.options.format, is_text && prints_colour(), task.options.columns})
              + "\n");
-    for (const auto* result : results) {
-        if (!result->measured) continue;
-        const auto doubt = doubts(*result);
-        put("{}: {}\n", describe(*result->cell), answer_text(result->measurement));
-        for (const auto& line : answer_warnings(result->measurement, task.scene)) put("  {}\n", line);
-        if (!doubt.empty()) put("  {}\n", doubt);
-    }
+    std::vector<const CellResult*> measured;
+    std::ranges::copy_if(results, std::back_inserter(measured), &CellResult::measured);
+    print_answers(measured);
+    print_notes(measured, task.scene);
+    std::vector<std::string> names;
+    for (const auto& row : rows) names.push_back(label_of(row, rows));
+    for (const auto& verdict : verdicts) put_paragraph(verdict_sentence(verdict, rows, names));
 }
 
 } // namespace tandem

@@ -10,8 +10,8 @@ namespace tandem {
 /// The measured cells among the results, in order.
 std::vector<Row> rows_of(const Task& task, std::span<const CellResult* const> results);
 
-/// Prints the tables of the rows with their verdicts, and for each measured result whether its answer is
-/// right.
+/// Prints the table of the rows, whether the answers of the measured results are right, doubts about their
+/// times, and the verdicts.
 void print_results(std::span<const Row> rows, const std::vector<Verdict>& verdicts, const Task& task,
                    std::span<const CellResult* const> results);
 

@@ -118,19 +118,22 @@ bool measure_cells(const Task& task, std::span<const Cell> cells, References& re
     return sample_group(group, measuring.check, measuring.stopping, measuring.seed, rounds);
 }
 
+std::string disturbed_text(std::span<const CellResult* const> results) {
+    std::map<std::string, std::size_t> reasons;
+    std::size_t disturbed = 0, all = 0;
+    for (const auto* result : results)
+        for (const auto& round : result->measurement.conditions) {
+            ++all;
+            if (const auto reason = round.disturbed()) ++disturbed, ++reasons[*reason];
+        }
+    if (disturbed == 0) return {};
+    const auto most = std::ranges::max_element(reasons, {}, [](const auto& entry) { return entry.second; });
+    return fmt::format("{} of {} rounds were disturbed ({})", disturbed, all, most->first);
+}
+
 std::string doubts(const CellResult& result) {
     const auto& m = result.measurement;
     std::vector<std::string> notes;
-    std::map<std::string, std::size_t> reasons;
-    std::size_t disturbed = 0;
-    for (const auto& round : m.conditions)
-        if (const auto reason = round.disturbed()) ++disturbed, ++reasons[*reason];
-    if (disturbed > 0) {
-        const auto most =
-            std::ranges::max_element(reasons, {}, [](const auto& entry) { return entry.second; });
-        notes.push_back(
-            fmt::format("{} of {} rounds disturbed ({})", disturbed, m.conditions.size(), most->first));
-    }
     if (!result.converged) notes.emplace_back("interval wider than asked for");
     const auto rounds = round_medians(m.totals(), m.rounds());
     if (const auto outliers = count_outliers(rounds); outliers > 0)

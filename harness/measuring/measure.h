@@ -41,7 +41,10 @@ struct CellsListener {
 bool measure_cells(const Task& task, std::span<const Cell> cells, References& references,
                    const Measuring& measuring, RecordFile& file, const CellsListener& listener);
 
-/// Reasons to doubt a cell's times, such as disturbed rounds or drift; empty when there are none.
+/// How many rounds other work disturbed, and the most frequent reason; empty when there are none.
+std::string disturbed_text(std::span<const CellResult* const> results);
+
+/// Other reasons to doubt a cell's times, such as drift; empty when there are none.
 std::string doubts(const CellResult& result);
 
 } // namespace tandem

@@ -224,12 +224,16 @@ SettingTexts changes(const Cell& cell) {
     return changed;
 }
 
-std::string describe(const Cell& cell) {
-    if (!cell.candidates.empty()) return fmt::format("{} on {}", automatic, name_of(cell.devices));
+std::string method_of(const Cell& cell) {
+    if (!cell.candidates.empty()) return std::string(automatic);
     std::vector<std::string> changed;
     for (const auto& [name, value] : changes(cell)) changed.push_back(fmt::format("{}={}", name, value));
-    return fmt::format("{} {}{}{} on {}", cell.algorithm->name(), cell.preset, changed.empty() ? "" : " ",
-                       fmt::join(changed, ","), name_of(cell.devices));
+    return fmt::format("{} {}{}{}", cell.algorithm->name(), cell.preset, changed.empty() ? "" : " ",
+                       fmt::join(changed, ","));
+}
+
+std::string describe(const Cell& cell) {
+    return fmt::format("{} on {}", method_of(cell), name_of(cell.devices));
 }
 
 } // namespace tandem

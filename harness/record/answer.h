@@ -8,7 +8,7 @@
 
 namespace tandem {
 
-/// The last printed line of a cell: right, or the number of wrong answers.
+/// What is printed of a cell's answer: right, or the number of wrong answers.
 std::string answer_text(const Measurement& m);
 
 /// What the rounding of vertices changed, against the input's doubles.

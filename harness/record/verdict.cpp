@@ -13,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
@@ -47,24 +48,37 @@ std::vector<std::size_t> group_of(std::span<const Row> rows, std::size_t first) 
     return group;
 }
 
-Verdict verdict_of(std::span<const Row> rows, const std::vector<std::size_t>& group) {
-    Verdict verdict;
-    std::vector<std::pair<double, std::size_t>> order;
-    for (const auto row : group) order.emplace_back(median_ns(*rows[row].measurement), row);
-    std::ranges::sort(order, [&](const auto& a, const auto& b) {
-        return std::tie(a.first, rows[a.second].key) < std::tie(b.first, rows[b.second].key);
-    });
-    const auto& fastest = *rows[order.front().second].measurement;
-    for (const auto& [median, row] : order) {
-        const auto& m = *rows[row].measurement;
-        auto& cell = verdict.cells.emplace_back(compared(m, fastest));
+/// The cells of `order`, compared with `fastest`, which is the first; the others by their ratios.
+std::vector<RankedCell> ranked_to(std::size_t fastest, std::span<const Row> rows,
+                                  const std::vector<std::size_t>& order) {
+    std::vector<RankedCell> cells;
+    for (const auto row : order) {
+        auto& cell = cells.emplace_back(compared(*rows[row].measurement, *rows[fastest].measurement));
         cell.row = row;
-        cell.median_ns = median;
-        verdict.answers_differ |= m.agreement.digest != fastest.agreement.digest;
+        cell.median_ns = median_ns(*rows[row].measurement);
     }
-    // By the ratios that the sentence states: those of medians can differ in order.
-    std::stable_sort(verdict.cells.begin() + 1, verdict.cells.end(),
-                     [](const auto& a, const auto& b) { return a.ratio.value < b.ratio.value; });
+    std::ranges::stable_sort(
+        cells, {}, [&](const RankedCell& cell) { return std::pair(cell.row != fastest, cell.ratio.value); });
+    return cells;
+}
+
+/// The cell with the lowest median is the fastest, unless another one is faster by the median of ratios,
+/// which are those that the sentence states. The steps end, because ratios of three cells need
+/// not agree.
+Verdict verdict_of(std::span<const Row> rows, std::vector<std::size_t> group) {
+    std::ranges::sort(group, {}, [&](std::size_t row) {
+        return std::pair(median_ns(*rows[row].measurement), std::string_view(rows[row].key));
+    });
+    Verdict verdict;
+    auto fastest = group.front();
+    for (std::size_t step = 0; step < group.size(); ++step) {
+        verdict.cells = ranked_to(fastest, rows, group);
+        if (verdict.cells[1].ratio.value >= 1) break;
+        fastest = verdict.cells[1].row;
+    }
+    const auto& digest = rows[group.front()].measurement->agreement.digest;
+    verdict.answers_differ = std::ranges::any_of(
+        group, [&](std::size_t row) { return rows[row].measurement->agreement.digest != digest; });
     return verdict;
 }
 
@@ -79,14 +93,20 @@ std::array<std::string, 3> body_pairs_of(const SettingTexts& settings) {
     return {within_boxes ? "boxes" : "all", value("first_body_pair"), value("most_body_pairs")};
 }
 
-std::string ratio_text(const RankedCell& cell) {
-    const auto& ratio = cell.ratio;
-    if (!cell.has_interval())
-        return fmt::format("takes {:.3g} times as long (one round: no interval)", ratio.value);
-    const auto interval = fmt::format("[{:.3g}, {:.3g}]", ratio.low, ratio.high);
-    if (!cell.is_told_apart())
-        return fmt::format("is not told apart from it ({:.3g} times its time {})", ratio.value, interval);
-    return fmt::format("takes {:.3g} times as long {}", ratio.value, interval);
+std::string interval_text(const RankedCell& cell) {
+    return fmt::format("[{:.3g}, {:.3g}]", cell.ratio.low, cell.ratio.high);
+}
+
+/// "A and B cannot be told apart", of all cells that nothing tells apart from the first.
+std::string not_told_apart(const Verdict& verdict, std::span<const std::string> labels) {
+    std::vector<std::string> names;
+    for (const auto& cell : verdict.cells)
+        if (verdict.is_leader(cell)) names.push_back(labels[cell.row]);
+    const auto last = names.back();
+    names.pop_back();
+    const auto& next = verdict.cells[1];
+    return fmt::format("{} and {} cannot be told apart with {} rounds (ratio {}); try --repeat {}",
+                       fmt::join(names, ", "), last, next.rounds, interval_text(next), 4 * next.rounds);
 }
 
 } // namespace
@@ -137,16 +157,26 @@ std::string verdict_sentence(const Verdict& verdict, std::span<const Row> rows,
                              std::span<const std::string> labels) {
     const auto label = [&](const RankedCell& cell) { return labels[cell.row]; };
     if (verdict.answers_differ)
-        return fmt::format("{} cells found different sets of candidate pairs: none counts as the fastest",
+        return fmt::format("{} cells found different sets of candidate pairs: none counts as the fastest.",
                            verdict.cells.size());
     const auto &first = verdict.cells[0], &next = verdict.cells[1], &last = verdict.cells.back();
-    const auto frames = rows[first.row].measurement->candidate_pairs.size();
-    auto text = fmt::format(
-        "{} {} of {} with {} ms a frame; the next, {}, {}.", label(first),
-        next.is_told_apart() ? "is the fastest" : "has the lowest median", verdict.cells.size(),
-        milliseconds(first.median_ns * 1e-6 / static_cast<double>(frames)), label(next), ratio_text(next));
-    if (verdict.cells.size() > 2) text += fmt::format(" The slowest, {}, {}.", label(last), ratio_text(last));
-    return text;
+    const auto frames = static_cast<double>(rows[first.row].measurement->candidate_pairs.size());
+    const auto ms = milliseconds(first.median_ns * 1e-6 / frames);
+    std::string text;
+    if (!next.has_interval())
+        text =
+            fmt::format("{} took the least time in one round: {} ms per frame, {:.3g} times as fast as {}; "
+                        "--repeat 5 gives an interval",
+                        label(first), ms, next.ratio.value, label(next));
+    else if (!next.is_told_apart())
+        text = not_told_apart(verdict, labels);
+    else
+        text = fmt::format("{} is fastest: {} ms per frame, {:.3g} times as fast as {} {}", label(first), ms,
+                           next.ratio.value, label(next), interval_text(next));
+    if (last.is_told_apart() && &last != &next)
+        text += fmt::format(". The slowest, {}, takes {:.3g} times as long {}", label(last), last.ratio.value,
+                            interval_text(last));
+    return text + ".";
 }
 
 } // namespace tandem

@@ -38,7 +38,7 @@ struct RankedCell {
 /// Which of several comparable cells is the fastest, and which others are told apart from it.
 /// python/tandem/verdicts.py reads it, and has the same rule for records of several runs.
 struct Verdict {
-    std::vector<RankedCell> cells; ///< by median, then by key
+    std::vector<RankedCell> cells; ///< the fastest, then the others by their ratios to it
     bool answers_differ = false;   ///< unchecked cells found different pairs: none is the fastest
 
     /// Whether no cell is told to be faster: the first, and those with an interval that contains 1.
@@ -52,8 +52,9 @@ RankedCell compared(const Measurement& m, const Measurement& fastest);
 /// One verdict for each set of at least two comparable rows with samples, in the order of their first rows.
 std::vector<Verdict> verdicts_of(std::span<const Row> rows);
 
-/// "A is the fastest of 3 with 1.2 ms a frame; the next, B, takes 1.5 times as long [1.4, 1.6]." A cell that
-/// is not told apart from the next one "has the lowest median". `labels` are the names of all rows.
+/// "A is fastest: 1.2 ms per frame, 1.5 times as fast as B [1.4, 1.6]." Where an interval contains 1: "A and
+/// B cannot be told apart with 5 rounds (ratio [0.9, 1.1]); try --repeat 20." `labels` are the names of all
+/// rows.
 std::string verdict_sentence(const Verdict& verdict, std::span<const Row> rows,
                              std::span<const std::string> labels);
 

@@ -69,6 +69,13 @@ def _compared(number, base, cell):
     return Ranked(number, ratio, min(len(base.rounds), len(cell.rounds)) > 1)
 
 
+def _ranked(cells, first, order):
+    """All of them, compared with the first; the others by their ratios."""
+    rest = (_compared(number, cells[first], cells[number]) for number in order if number != first)
+    own = Ranked(first, ONE, len(cells[first].rounds) > 1)
+    return [own, *sorted(rest, key=lambda one: one.ratio.value)]
+
+
 def computed(cells, same_work=True):
     """The Verdict of Cells with at least one round each, by the rule of harness/record/verdict.h. same_work:
     they should have equal pairs."""
@@ -76,13 +83,12 @@ def computed(cells, same_work=True):
     answers = {cell.pairs for cell in cells} - {None} if same_work else ()
     if not order:
         return Verdict()
-    first, *rest = order
-    is_in_pairs = len(cells[first].rounds) > 1
-    # By the ratios that a sentence states: those of medians can differ in order.
-    slower = sorted(
-        (_compared(number, cells[first], cells[number]) for number in rest), key=lambda one: one.ratio.value
-    )
-    ranked = [Ranked(first, ONE, is_in_pairs), *slower]
+    first = order[0]
+    for _ in order:  # the steps end, because ratios of three cells need not agree
+        ranked = _ranked(cells, first, order)
+        if len(order) < 2 or ranked[1].ratio.value >= 1:
+            break
+        first = ranked[1].cell
     return Verdict(tuple(ranked), len(answers) > 1)
 
 

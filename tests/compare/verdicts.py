@@ -73,6 +73,12 @@ class Verdicts(unittest.TestCase):
         self.assertEqual(computed([one, two]).leaders(), [0])
         self.assertEqual(computed([]).leaders(), [])
 
+    def test_the_fastest_is_so_by_its_ratios(self):
+        cells = [cell_of("a", [10, 20, 30]), cell_of("b", [9, 21, 28])]
+        found = computed(cells)
+        self.assertEqual([one.cell for one in found.cells], [1, 0])
+        self.assertGreater(found.cells[1].ratio.value, 1)
+
     def test_other_answers_have_no_fastest(self):
         cells = [cell_of("a", [1.0], pairs=1), cell_of("b", [2.0], pairs=2)]
         self.assertEqual(computed(cells).leaders(), [])

@@ -7,7 +7,7 @@ import json
 import os
 import re
 
-from tests.program import PROGRAM, SMALL, Case, ran, tandem, words_of
+from tests.program import PROGRAM, SMALL, Case, ran, right_cells, tandem, words_of
 
 SCENES = ["plates:count=2", "pile:bodies=2,frames=3"]
 CAPACITIES = {
@@ -85,7 +85,7 @@ class Plans(RanksCase):
         self.assertEqual(tandem("run", self.plan(), "--out", alone)[0], 0)
         status, text, errors = launch(of(2)("run", self.plan(), "--out", shared))
         self.assertEqual((status, errors), (0, []), text)
-        self.assertEqual((text.count("8 records appended"), text.count(": right: ")), (1, 8))
+        self.assertEqual((text.count("8 records appended"), right_cells(text)), (1, 8))
         cell = lambda record: (record["scene"]["key"], record["algorithm"], record["settings"]["k"])
         expected = {cell(record): record for record in self.records(alone)}
         found = {cell(record): record for record in self.records(shared)}
@@ -109,7 +109,7 @@ class Plans(RanksCase):
         )
         self.assertEqual(tandem(*words, alone)[0], 0)
         status, text, errors = launch(of(2)(*words, shared))
-        self.assertEqual((status, errors, text.count(": right: ")), (0, [], 2), text)
+        self.assertEqual((status, errors, right_cells(text)), (0, [], 2), text)
         answers = lambda path: {
             r["algorithm"]: [
                 r["work"][part] for part in ("candidate_pairs", "contacts", "digest", "contact_digest")

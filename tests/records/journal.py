@@ -10,7 +10,7 @@ import signal
 import subprocess
 import time
 
-from tests.program import PROGRAM, SOURCE, Case, words_of
+from tests.program import PROGRAM, SOURCE, Case, right_cells, words_of
 
 LINE = b'{"what":"was there before"}\n'
 
@@ -85,8 +85,8 @@ class Journal(Case):
                 ["tandem: /dev/full: writing failed (No space left on device); earlier records are complete"],
             ),
         )
-        self.assertIn("traverse", text)
-        self.assertEqual(text.count(": right: "), 1, text)
+        self.assertIn("walk", text)
+        self.assertEqual(right_cells(text), 1, text)
         for command in (
             ("check", *self.cell("--set", "k=6,8")),
             ("accuracy", f"{self.meshes()} --set k=6,8"),
@@ -118,7 +118,7 @@ class Journal(Case):
         )
         self.assertEqual((status, len(errors)), (3, 1), (text, errors))
         self.assertIn("writing failed (File too large)", errors[0])
-        self.assertEqual(text.count(": right: "), 2, text)
+        self.assertEqual(right_cells(text), 2, text)
         self.assertIn(f"1 records appended to {out}", text)
         self.assertEqual([r["settings"]["k"] for r in self.whole(out)], ["6"])
 
@@ -130,7 +130,7 @@ class Journal(Case):
             before=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100)),
         )
         self.assertEqual((status, errors), (3, [f"tandem: {dump}: writing failed (File too large)"]), text)
-        self.assertIn(": right: ", text)
+        self.assertIn("right: no pair missing", text)
         self.assertEqual(list(dump.parent.glob("pairs.csv*")), [], "a part would read as the answer")
 
     def test_exports_pages_and_pictures_at_a_limit(self):
@@ -230,8 +230,11 @@ class Journal(Case):
                     errors = [
                         line for line in errors if line.strip() and not line.rstrip().endswith("generated.")
                     ]
-                    self.assertEqual((status, len(errors)), (3, 1), (name, command, errors))
-                    self.assertIn("tandem: standard output could not be written (", errors[0])
+                    if name == "broken":  # its reader has all that it wanted
+                        self.assertEqual((status, errors), (0, []), command)
+                    else:
+                        self.assertEqual((status, len(errors)), (3, 1), (name, command, errors))
+                        self.assertIn("tandem: standard output could not be written (", errors[0])
                     if last == "--out":
                         self.assertEqual(len(self.records(out)), 1)
                     elif last == "--record":

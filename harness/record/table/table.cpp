@@ -2,6 +2,7 @@
 #include "harness/record/table/table.h"
 
 #include "harness/plans/cell_session.h"
+#include "harness/plans/device_groups.h"
 #include "base/statistics.h"
 #include "base/standard_streams.h"
 #include "base/text_lines.h"
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <numeric>
 #include <set>
 
@@ -42,6 +44,11 @@ std::uint64_t count_over(const Measurement& m, std::span<const Stage> stages,
     return sum;
 }
 
+bool on_one_group(std::span<const Row> rows) {
+    return std::ranges::all_of(
+        rows, [&](const Row& row) { return row.cell->devices == rows.front().cell->devices; });
+}
+
 std::vector<Stage> all_stages() {
     std::vector<Stage> stages;
     for (std::size_t i = 0; i < stage_names.size(); ++i) stages.push_back(static_cast<Stage>(i));
@@ -60,21 +67,26 @@ double stage_ms(const Measurement& m, Stage stage) {
     return stage_ms(m, stage, host ? &StageSample::host_ns : &StageSample::device_ns);
 }
 
-double sum_ms(const Measurement& m, std::initializer_list<Stage> stages) {
+/// Stages that belong together.
+struct Part {
+    const char* name;
+    std::vector<Stage> stages;
+};
+
+const std::vector<Part>& parts() {
+    static const std::vector<Part> all{{"refit", {Stage::transform, Stage::refit}},
+                                       {"broad", {Stage::broad}},
+                                       {"walk", {Stage::seed, Stage::traverse, Stage::balance}},
+                                       {"contacts", {Stage::contact, Stage::sort, Stage::reduce}},
+                                       {"transfers", {Stage::read, Stage::write, Stage::exchange}},
+                                       {"conversion", {Stage::preprocess, Stage::postprocess}}};
+    return all;
+}
+
+double part_ms(const Measurement& m, const Part& part) {
     double sum = 0;
-    for (const auto stage : stages) sum += stage_ms(m, stage);
+    for (const auto stage : part.stages) sum += stage_ms(m, stage);
     return sum;
-}
-
-/// Kernels of the walk and its contacts, without transform, refit and broad phase.
-double kernels_ms(const Measurement& m) {
-    return sum_ms(m, {Stage::seed, Stage::traverse, Stage::balance, Stage::contact});
-}
-
-/// Kernels, transfers and conversions after the refit. The paper calls this the narrow phase; its wall-clock
-/// overheads are not included.
-double narrow_ms(const Measurement& m) {
-    return kernels_ms(m) + sum_ms(m, {Stage::read, Stage::write, Stage::preprocess, Stage::postprocess});
 }
 
 std::uint64_t total_count(const std::vector<std::uint64_t>& values) {
@@ -114,7 +126,7 @@ std::string imbalance_text(const Measurement& m) {
     return fmt::format("{:.2f}", values[values.size() / 2]);
 }
 
-/// Half the widths of the 95 % intervals; "?" for one round.
+/// Half the widths of the 95 % intervals, of at least two rounds.
 TableColumn interval_column(std::span<const Row> rows) {
     auto column = ms_column("95 %", rows, [](const Measurement& m) {
         if (m.round_count() < 2) return 0.0;
@@ -122,7 +134,7 @@ TableColumn interval_column(std::span<const Row> rows) {
         return per_frame_ms(m, (s.high - s.low) / 2);
     });
     for (std::size_t i = 0; i < rows.size(); ++i)
-        column.texts[i] = "± " + (rows[i].measurement->round_count() < 2 ? "?" : column.texts[i]);
+        column.texts[i] = rows[i].measurement->round_count() < 2 ? "" : "± " + column.texts[i];
     return column;
 }
 
@@ -141,7 +153,7 @@ std::set<std::size_t> leaders_of(const std::vector<Verdict>& verdicts) {
 
 TableColumn medians_column(std::span<const Row> rows, const std::vector<Verdict>& verdicts, bool colour) {
     auto column =
-        ms_column("ms/frame", rows, [](const Measurement& m) { return per_frame_ms(m, median_ns(m)); });
+        ms_column("frame", rows, [](const Measurement& m) { return per_frame_ms(m, median_ns(m)); });
     for (const auto row : leaders_of(verdicts))
         column.texts[row] = painted(column.texts[row], "1;32", colour);
     return column;
@@ -164,41 +176,86 @@ std::vector<TableColumn> throughput_columns(std::span<const Row> rows, const Sce
     return columns;
 }
 
-std::string totals_table(std::span<const Row> rows, const std::vector<std::string>& names,
-                         const std::vector<Verdict>& verdicts, const Scene& scene, const TableStyle& style) {
-    std::vector<TableColumn> columns{
-        medians_column(rows, verdicts, style.colour),
-        interval_column(rows),
+/// The time of each compared cell to that of the fastest one. "≈" precedes an interval that contains 1.
+TableColumn ratios_column(std::span<const Row> rows, const std::vector<Verdict>& verdicts) {
+    TableColumn column{"times as long", std::vector<std::string>(rows.size())};
+    for (const auto& verdict : verdicts)
+        for (const auto& cell : verdict.cells) {
+            auto& text = column.texts[cell.row];
+            const auto& [value, low, high] = cell.ratio;
+            if (&cell == &verdict.cells.front())
+                text = "1";
+            else if (!cell.has_interval())
+                text = fmt::format("{:.3g}", value);
+            else
+                text = fmt::format("{}{:.3g} [{:.3g}, {:.3g}]", cell.is_told_apart() ? "" : "≈ ", value, low,
+                                   high);
+        }
+    return column;
+}
+
+/// Columns of the parts of a frame that take at least a hundredth of it in some row.
+std::vector<TableColumn> part_columns(std::span<const Row> rows) {
+    std::vector<TableColumn> columns;
+    for (const auto& part : parts()) {
+        const auto ms = [&](const Measurement& m) { return part_ms(m, part); };
+        const auto shows = [&](const Row& row) {
+            const auto& m = *row.measurement;
+            return ms(m) >= 0.01 * per_frame_ms(m, median_ns(m)) && ms(m) > 0;
+        };
+        if (std::ranges::any_of(rows, shows)) columns.push_back(ms_column(part.name, rows, ms));
+    }
+    return columns;
+}
+
+std::vector<TableColumn> count_columns(std::span<const Row> rows) {
+    return {
         column("rounds", rows, [](const Row& row) { return fmt::to_string(row.measurement->round_count()); }),
         count_column("pairs", rows,
                      [](const Row& row) { return total_count(row.measurement->candidate_pairs); }),
         count_column("contacts", rows, [](const Row& row) { return total_count(row.measurement->contacts); }),
-        count_column("launches", rows, [](const Row& row) { return launches_of(*row.measurement); }),
-        count_column(
-            "waits", rows,
-            [](const Row& row) { return count_over(*row.measurement, all_stages(), &StageSample::waits); }),
-        column("imbalance", rows, [](const Row& row) { return imbalance_text(*row.measurement); })};
+        count_column("launches", rows, [](const Row& row) { return launches_of(*row.measurement); })};
+}
+
+/// "1 round", "3.2 M pairs".
+std::string counted(const std::string& count, std::string_view noun) {
+    if (count == "1" && noun.ends_with('s')) noun.remove_suffix(1);
+    return fmt::format("{} {}", count, noun);
+}
+
+/// "5 rounds, 3.2 M pairs; 21 frames on host": what all rows have in common. Moves the other columns to
+/// `differing`.
+std::string common_line(std::span<const Row> rows, std::vector<TableColumn> columns,
+                        std::vector<TableColumn>& differing) {
+    std::vector<std::string> common;
+    for (auto& column : columns) {
+        const auto& text = column.texts.front();
+        if (std::ranges::count(column.texts, text) != std::ssize(column.texts))
+            differing.push_back(std::move(column));
+        else if (!text.empty())
+            common.push_back(counted(text, column.head));
+    }
+    const auto frames = fmt::to_string(rows.front().measurement->candidate_pairs.size());
+    return fmt::format("{}; {}{}", fmt::join(common, ", "), counted(frames, "frames"),
+                       on_one_group(rows) ? " on " + name_of(rows.front().cell->devices) : "");
+}
+
+std::string main_table(std::span<const Row> rows, const std::vector<Verdict>& verdicts, const Scene& scene,
+                       const TableStyle& style) {
+    std::vector<std::string> names;
+    for (const auto& row : rows) names.push_back(label_of(row, rows));
+    std::vector<TableColumn> columns{medians_column(rows, verdicts, style.colour), interval_column(rows),
+                                     ratios_column(rows, verdicts)};
+    for (auto& more : part_columns(rows)) columns.push_back(std::move(more));
+    const auto common = common_line(rows, count_columns(rows), columns);
+    columns.push_back(
+        column("imbalance", rows, [](const Row& row) { return imbalance_text(*row.measurement); }));
     for (auto& more : throughput_columns(rows, scene, style.throughput)) columns.push_back(std::move(more));
     columns.push_back(column("", rows, [&](const Row& row) {
         return row.measurement->agreement.ok() ? std::string() : painted("WRONG", "1;31", style.colour);
     }));
-    return in_columns(names, "", columns, style.format);
-}
-
-std::string stages_table(std::span<const Row> rows, const std::vector<std::string>& names,
-                         TableFormat format) {
-    std::vector<TableColumn> columns;
-    for (const auto stage : all_stages()) {
-        const auto ms = [stage](const Measurement& m) { return stage_ms(m, stage); };
-        if (std::ranges::all_of(rows, [&](const Row& row) { return ms(*row.measurement) < 5e-6; })) continue;
-        columns.push_back(ms_column(std::string(stage_names[static_cast<std::size_t>(stage)]), rows, ms));
-    }
-    columns.push_back(ms_column("frame", rows, [](const Measurement& m) {
-        return replay_ms(m, [](const InstrumentedReplay& r) {
-            return std::accumulate(r.frame_ns.begin(), r.frame_ns.end(), std::int64_t{0});
-        });
-    }));
-    return in_columns(names, "stages, ms/frame", columns, format);
+    return fmt::format("{}\n{}", paragraph(common, 2, output_columns()),
+                       in_columns(names, "ms/frame", columns, style.format));
 }
 
 /// Milliseconds a frame of one device in a stage, by the host's clock for the host's work.
@@ -260,72 +317,18 @@ std::string devices_table(const Row& row, TableFormat format) {
                        is_markdown ? "\n" : "", in_columns(devices, "a frame", columns, format));
 }
 
-/// With the 95 % interval for at least two rounds. "≈" precedes the ratio when the interval contains 1; "-"
-/// without samples.
-std::string ratio_text(const Measurement& above, const Measurement& below) {
-    if (above.samples.empty() || below.samples.empty()) return "-";
-    const auto cell = compared(above, below);
-    if (!cell.has_interval()) return fmt::format("{:.2f}", cell.ratio.value);
-    return fmt::format("{}{:.3g} [{:.3g}, {:.3g}]", cell.is_told_apart() ? "" : "≈ ", cell.ratio.value,
-                       cell.ratio.low, cell.ratio.high);
-}
-
-std::string quotient(double above, double below) {
-    return below > 0 ? fmt::format("{:.3g}", above / below) : std::string("-");
-}
-
-/// Ratios of the comparable rows after `base` to `base`.
-std::string ratios_to(const Row& base, std::span<const Row> rows, TableFormat format) {
-    std::vector<Row> compared;
-    std::vector<std::string> names;
-    for (const auto& row : rows)
-        if (row.cell != base.cell && comparable(base, row)) {
-            compared.push_back(row);
-            names.push_back(describe(*row.cell));
-        }
-    if (compared.empty()) return {};
-    const auto& b = *base.measurement;
-    const auto ratios = [&](const char* head, const auto& value) {
-        return column(head, compared,
-                      [&](const Row& row) { return quotient(value(*row.measurement), value(b)); });
-    };
-    const auto stage = [](Stage s) { return [s](const Measurement& m) { return stage_ms(m, s); }; };
-    const std::vector<TableColumn> columns{
-        column("total", compared, [&](const Row& row) { return ratio_text(*row.measurement, b); }),
-        ratios("narrow", narrow_ms),
-        ratios("kernels", kernels_ms),
-        ratios("read", stage(Stage::read)),
-        ratios("write", stage(Stage::write)),
-        ratios("launches", [](const Measurement& m) { return static_cast<double>(launches_of(m)); })};
-    const bool is_markdown = format == TableFormat::markdown; // in which a line before a table joins it
-    return fmt::format("{}{}{}\n", paragraph("times as long as " + describe(*base.cell), 2, output_columns()),
-                       is_markdown ? "\n" : "", in_columns(names, "", columns, format));
-}
-
-/// The first row of each set of comparable rows is the base of its ratios.
-std::string ratio_tables(std::span<const Row> rows, TableFormat format) {
-    std::string text;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        const bool is_first =
-            std::ranges::none_of(rows.first(i), [&](const Row& r) { return comparable(r, rows[i]); });
-        if (is_first) text += ratios_to(rows[i], rows.subspan(i), format);
-    }
-    return text;
-}
-
 } // namespace
+
+std::string label_of(const Row& row, std::span<const Row> rows) {
+    return on_one_group(rows) ? method_of(*row.cell) : describe(*row.cell);
+}
 
 std::string result_tables(std::span<const Row> rows, const std::vector<Verdict>& verdicts, const Scene& scene,
                           const TableStyle& style) {
     if (rows.empty()) return {};
-    std::vector<std::string> names;
-    for (const auto& row : rows) names.push_back(describe(*row.cell));
-    auto text = totals_table(rows, names, verdicts, scene, style) + "\n";
-    text += stages_table(rows, names, style.format) + "\n";
-    for (const auto& row : rows) text += devices_table(row, style.format);
-    text += ratio_tables(rows, style.format);
-    for (const auto& verdict : verdicts)
-        text += paragraph(verdict_sentence(verdict, rows, names), 2, output_columns());
+    auto text = main_table(rows, verdicts, scene, style);
+    for (const auto& row : rows)
+        if (const auto devices = devices_table(row, style.format); !devices.empty()) text += "\n" + devices;
     return text;
 }
 

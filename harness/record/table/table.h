@@ -16,11 +16,14 @@ struct TableStyle {
     std::vector<std::string> throughput{}; ///< names of further columns (throughput.h)
 };
 
-/// Tables of rows of one scene, in milliseconds a frame. The first has medians, half the width of their 95 %
-/// intervals, counts and throughput. The second has the stages of the instrumented replays, which are slower:
-/// by the host's clock for the host's work, by the device's otherwise. One table a cell follows for several
-/// devices. The last has ratios to the first comparable cell, in the columns of the paper's Table 4. The
-/// verdicts follow, a sentence each. Cells have their names of describe(). `verdicts` are those of the rows.
+/// The name of a row among `rows`: without devices if all have the same.
+std::string label_of(const Row& row, std::span<const Row> rows);
+
+/// A table of rows of one scene, below a line of what they have in common: medians in milliseconds per frame
+/// with half the width of their 95 % intervals, times to that of the fastest comparable cell, the parts of a
+/// frame from the instrumented replays, which are slower, and counts. Parts are by the host's clock for the
+/// host's work, by the device's otherwise. One table per cell follows for several devices. `verdicts` are
+/// those of the rows.
 std::string result_tables(std::span<const Row> rows, const std::vector<Verdict>& verdicts, const Scene& scene,
                           const TableStyle& style);
 
