@@ -11,7 +11,7 @@ import tempfile
 from tests.program import BUILT, LONG, PROGRAM, Case, tandem
 
 SHIM = BUILT / "libopencl_shim.so"
-AT_ONCE = 4
+AT_ONCE = 4 if LONG else 2
 REPEATS = 5 if LONG else 1
 
 

@@ -153,7 +153,7 @@ TEST_P(BroadSessions, ACapacityOfExactlyTheBodyPairsNeedsNoRetry) {
     search.sort_by(0);
     search.go_to(0);
     const auto pairs = search.expected().size();
-    for (const auto* traversal : algorithms()) {
+    for (const auto* traversal : walks()) {
         for (const std::uint64_t capacity : {std::uint64_t{1}, pairs - 1, pairs}) {
             const auto session =
                 prepare_on(on, *traversal, scene,
@@ -172,7 +172,7 @@ TEST_P(BroadSessions, ExplicitPairsReplaceTheBroadPhase) {
     const auto frame = scene.frame(0);
     const auto right = reference(scene, frame, {}, true, Method::brute_force);
     const BodyPair first{right.pairs.front().body_a, right.pairs.front().body_b};
-    for (const auto* traversal : algorithms())
+    for (const auto* traversal : walks())
         for (const std::string broad : {"device", "tight"}) {
             const auto session = prepare_on(on, *traversal, scene, {{"broad", broad}});
             EXPECT_EQ(session->run(frame).digest(), right.digest);

@@ -223,7 +223,9 @@ protected:
         auto& on = device(device_id);
         const auto rows = possible(pairwise(axes_of(traversal)));
         ASSERT_GE(rows.size(), 2 * parts);
-        for (auto i = part; i < rows.size(); i += parts) {
+        // Where kernels must be compiled, the short form has every second row of its part.
+        const auto step = device_id == "host" || long_form() ? parts : 2 * parts;
+        for (auto i = part; i < rows.size(); i += step) {
             std::uint64_t pairs = 0;
             std::uint64_t contacts = 0;
             expect_right(on, traversal, crowd(seed + i, bodies, 0.8), fitted(traversal, on, rows[i]), pairs,

@@ -88,6 +88,7 @@ protected:
 };
 
 TEST_P(ContactConformance, EveryDecisionEqualsTheReferenceInEveryResidency) {
+    TANDEM_LONG_FORM_ONLY(GetParam());
     EXPECT_EQ(expect_right("chunked", {}).undecided_by_filter, 0u);
     const auto recheck = expect_right("chunked", {{"decision", "recheck"}, {"contact_rule", "sat"}});
     EXPECT_GT(recheck.undecided_by_double, 100u);
@@ -107,6 +108,7 @@ TEST_P(ContactConformance, EveryDecisionEqualsTheReferenceInEveryResidency) {
 }
 
 TEST_P(ContactConformance, RulesThatUseTheBoundaryEqualTheReference) {
+    TANDEM_LONG_FORM_ONLY(GetParam());
     const auto sat = expect_right("chunked", {{"contact_rule", "sat"}});
     const auto restricted = expect_right("gproximity", {{"contact_rule", "restricted"}});
     EXPECT_EQ(restricted.contacts, sat.contacts); // every tetrahedron of a stone has boundary faces
@@ -118,6 +120,7 @@ TEST_P(ContactConformance, RulesThatUseTheBoundaryEqualTheReference) {
 }
 
 TEST_P(ContactConformance, NestedPairsEqualTheReference) {
+    TANDEM_LONG_FORM_ONLY(GetParam());
     scene = nested_pairs();
     frame = scene.frame(0);
     for (const std::string rule : {"sat", "clip", "growth"})

@@ -54,7 +54,7 @@ void EarlyEnds::end_everywhere(const Traversal& traversal, const SettingTexts& g
 }
 
 TEST_P(EarlyEnds, LeaveEverySessionUsable) {
-    for (const auto* traversal : algorithms())
+    for (const auto* traversal : walks())
         for (const auto& residency : residencies_of(*traversal)) end_everywhere(*traversal, residency);
 }
 

@@ -89,10 +89,11 @@ TEST_P(Filters, WorldsAreApartInEveryBroadPhase) {
         auto whole = scene;
         whole.world_size = 0;
         for (const std::string broad : {"device", "tight"}) {
+            if (compiles_briefly() && broad == "tight") continue; // a broad phase of the host
             SCOPED_TRACE(fmt::format("{} worlds of {}, broad={}", count, size, broad));
             const SettingTexts given{{"broad", broad}, {"self", "deformable"}, {"contact_rule", "none"}};
             const auto& tiled = algorithm("tiled");
-            auto right = prepare_on(on, tiled, whole, given)->run(whole.frame(0)).download();
+            auto right = prepare_on(device("host"), tiled, whole, given)->run(whole.frame(0)).download();
             std::erase_if(right, [&](const Pair& pair) { return pair.body_a / size != pair.body_b / size; });
             const auto session = prepare_on(on, tiled, scene, given);
             const auto result = session->run(scene.frame(0));

@@ -84,7 +84,7 @@ protected:
 
 TEST_P(Interior, MakesTheSameContactsWithEveryAlgorithm) {
     const auto scene = boxes_scene(4, 4);
-    for (const auto* traversal : algorithms())
+    for (const auto* traversal : walks())
         for (const std::string rule : {"opposing", "published"})
             expect_same_contacts(*traversal, scene, {{"contact_rule", rule}, {"broad", "device"}});
     if (GetParam() == "host" && embree_absence().empty())
@@ -111,7 +111,7 @@ TEST_P(Interior, MakesTheSameContactsWithEverySetting) {
 TEST_P(Interior, MakesTheSameContactsInBatches) {
     const auto scene = crowd(71, 10, 0.9);
     const auto frame = scene.frame(0);
-    for (const auto* traversal : algorithms()) {
+    for (const auto* traversal : walks()) {
         const SettingTexts given{{"broad", "device"}, {"k", "8"}, {"output", "contacts"}};
         SCOPED_TRACE(traversal->name());
         const auto whole = prepare(*traversal, scene, given, "pairs")->run(frame);
@@ -159,7 +159,7 @@ TEST_P(Interior, IsWalkedInAMeshWithoutBoundary) {
     mesh.tetrahedra = {{0, 1, 2, 3}, {4, 1, 2, 3}, {0, 4, 2, 3}, {0, 1, 4, 3}, {0, 1, 2, 4}};
     complete_mesh(mesh, "closed");
     ASSERT_THAT(mesh.boundary, testing::Each(0));
-    for (const auto* traversal : algorithms()) {
+    for (const auto* traversal : walks()) {
         const auto result =
             prepare(*traversal, scene, {{"broad", "device"}}, "contacts")->run(scene.frame(0));
         const auto whole = prepare(*traversal, scene, {{"broad", "device"}}, "pairs")->run(scene.frame(0));
@@ -185,7 +185,7 @@ TEST(InteriorOfParts, MakesTheSameContactsOnTwoDevices) {
     const auto scene = procession(24, 4, 0.35);
     const std::array both{&device("host"), &device("opencl:0")};
     const std::array one{&device("host")};
-    for (const auto* traversal : algorithms()) {
+    for (const auto* traversal : walks(!long_form())) {
         SCOPED_TRACE(traversal->name());
         const auto settings = [&](const std::string& output) {
             return resolved(*traversal, {{"broad", "device"}, {"output", output}});

@@ -152,7 +152,7 @@ void Ladder::expect_right(const Scene& scene, const Mode& mode, const Chosen& ch
 }
 
 /// In short form every second size has pairs of one body, by the first preset of every second algorithm, and
-/// the others a mode and a sixth of all presets in turn. Devices other than the host have a sixth of the
+/// the others a mode and a sixth of all presets in turn. Devices other than the host have a twelfth of the
 /// sizes.
 TEST_P(Ladder, EverySizeHasThePairsOfASweepLong) {
     struct Step {
@@ -162,7 +162,7 @@ TEST_P(Ladder, EverySizeHasThePairsOfASweepLong) {
     for (const auto count : rungs(20000)) steps.push_back({2, count});
     for (const auto bodies : rungs(long_form() ? 3000 : 400))
         steps.push_back({bodies, bodies % 4 == 0 ? 40u : 6u});
-    const std::size_t every = long_form() || GetParam() == "host" ? 1 : 6;
+    const std::size_t every = long_form() || GetParam() == "host" ? 1 : 12;
     for (std::size_t i = 0, turn = 0; i < steps.size(); i += every, ++turn)
         for (std::size_t mode = 0; mode < modes.size(); ++mode) {
             const bool is_self = turn % 2 == 0;

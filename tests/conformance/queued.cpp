@@ -44,7 +44,7 @@ bool needs_host(const Traversal& traversal) {
 
 TEST_P(Queued, FramesHaveTheAnswersOfRun) {
     const auto scene = crowd(3, 12, 1.5);
-    for (const auto* traversal : algorithms()) {
+    for (const auto* traversal : walks()) {
         if (needs_host(*traversal)) continue;
         for (const auto& given : {SettingTexts{{"k", "18"}},
                                   {{"k", "8"}, {"precision", "double"}, {"decision", "recheck"}},

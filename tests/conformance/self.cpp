@@ -67,7 +67,7 @@ std::uint64_t of_body(const std::vector<Pair>& pairs, std::uint32_t body) {
 /// Every broad phase finds the bodies, and every walk the pairs, with both layouts of pairs.
 TEST_P(SelfPairsOf, EveryAlgorithmFindsThePairsOfTheReference) {
     const auto scene = folded_boxes(3);
-    for (const auto* traversal : algorithms())
+    for (const auto* traversal : walks())
         for (const SettingTexts& given :
              {SettingTexts{{"self", "on"}, {"broad", "device"}},
               SettingTexts{{"self", "deformable"}, {"broad", "device"}, {"pair_layout", "items"}},
@@ -92,7 +92,7 @@ TEST_P(SelfPairsOf, EveryAlgorithmFindsThePairsOfTheReference) {
 TEST_P(SelfPairsOf, AreOrderedAndShareNoVertex) {
     const auto scene = folded_boxes(3);
     const auto& tetrahedra = scene.meshes.front().tetrahedra;
-    for (const auto* traversal : algorithms()) {
+    for (const auto* traversal : walks()) {
         SCOPED_TRACE(traversal->name());
         const auto pairs = prepare(*traversal, scene, {{"self", "on"}})->run(scene.frame(0)).download();
         EXPECT_EQ(std::ranges::adjacent_find(pairs), pairs.end()) << "a pair was found twice";
@@ -107,6 +107,7 @@ TEST_P(SelfPairsOf, AreOrderedAndShareNoVertex) {
 
 /// The sweep of the reference, with bodies of several chunks and tiles.
 TEST_P(SelfPairsOf, LargerBodiesHaveThePairsOfASweep) {
+    TANDEM_LONG_FORM_ONLY(GetParam());
     const auto scene = folded_boxes(7);
     const auto frame = scene.frame(1);
     for (const auto* traversal : algorithms())
@@ -131,6 +132,7 @@ TEST_P(SelfPairsOf, LargerBodiesHaveThePairsOfASweep) {
 /// Both lower the seed threshold of a body pair, so that pairs would be seeded above the levels that two
 /// bodies need.
 TEST_P(SelfPairsOf, MoreBodyPairsThanTwoBodiesFormAreWalked) {
+    TANDEM_LONG_FORM_ONLY(GetParam());
     const auto scene = folded_boxes(7);
     const auto frame = scene.frame(1);
     const std::array given{BodyPair{0, 1}, BodyPair{1, 1}, BodyPair{1, 2}, BodyPair{2, 2}};
@@ -179,7 +181,7 @@ TEST_P(SelfPairsOf, BatchesGiveTheSameAnswer) {
     const auto scene = folded_boxes(6);
     const auto frame = scene.frame(0);
     const BodyPair only{2, 2};
-    for (const auto* traversal : algorithms())
+    for (const auto* traversal : walks())
         for (const std::string output : {"pairs", "digest"}) {
             if (!long_form() && GetParam() != "host" && output != "pairs") continue; // compilation takes long
             const SettingTexts given{{"self", "on"}, {"output", output}};
@@ -202,7 +204,7 @@ TEST_P(SelfPairsOf, SkippedTetrahedraAreInNoPair) {
     auto frame = scene.frame(0);
     frame.skipped.resize(scene.bodies.size());
     for (std::uint32_t t = 0; t < 160; t += 3) frame.skipped[2].push_back(t);
-    for (const auto* traversal : algorithms()) {
+    for (const auto* traversal : walks()) {
         SCOPED_TRACE(traversal->name());
         const auto session = prepare(*traversal, scene, {{"self", "deformable"}});
         const auto right = right_for(*session, scene, frame);
@@ -227,7 +229,7 @@ TEST(SharedSelfPairs, BelongToOneDevice) {
     const auto scene = folded_boxes(3);
     const std::array devices{&device("host"), &device("opencl:0")};
     for (const std::string broad : {"device", "tight"})
-        for (const auto* traversal : algorithms()) {
+        for (const auto* traversal : walks(!long_form())) {
             SCOPED_TRACE(std::string(traversal->name()) + " " + broad);
             const auto session =
                 traversal->prepare(devices, scene, resolved(*traversal, {{"self", "on"}, {"broad", broad}}));

@@ -72,7 +72,7 @@ protected:
 
 TEST_P(Skipping, KeepsAllOtherPairsWithEveryPreset) {
     const auto scene = boxes_scene(3, 4);
-    for (const auto* traversal : algorithms())
+    for (const auto* traversal : walks())
         for (const auto& preset : traversal->presets()) {
             SettingTexts given{{"contact_rule", "none"}};
             if (traversal->name() == "gproximity") given["queue_capacity"] = "4096";

@@ -235,7 +235,7 @@ TEST_P(HardAlgorithms, MissNoPairOfUnskippedTetrahedra) {
 TEST_P(HardAlgorithms, ExactCapacityLosesNothing) {
     const auto scene = make_scene("hard:exact-capacity:difficulty=1000");
     const auto frame = scene.frame(0);
-    for (const auto* traversal : algorithms())
+    for (const auto* traversal : walks())
         for (const auto& [capacity, retries] : {std::pair{"999", 1u}, {"1000", 0u}, {"1001", 0u}}) {
             const auto session = prepare_on(on, *traversal, scene, {{"pair_capacity", capacity}});
             const auto result = run_among_all(*session, scene, frame);
@@ -249,7 +249,7 @@ TEST_P(HardAlgorithms, ExactCapacityLosesNothing) {
 TEST_P(HardAlgorithms, CountsEqualTheConstruction) {
     const auto& family = hard_family("counter-wrap");
     const auto scene = make_scene("hard:counter-wrap:difficulty=15");
-    for (const auto* traversal : algorithms())
+    for (const auto* traversal : walks())
         for (const std::string output : {"pairs", "count", "digest"}) {
             const auto session = prepare_on(on, *traversal, scene, {{"output", output}});
             const auto result = run_among_all(*session, scene, scene.frame(0));

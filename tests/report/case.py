@@ -19,15 +19,10 @@ class Shown(html.parser.HTMLParser):
 
     def __init__(self, text):
         super().__init__()
-        self.rows, self.words, self.tags, self.data, self._open, self._is_in_cell = (
-            [],
-            "",
-            set(),
-            {},
-            "",
-            False,
-        )
+        self.rows, self.tags, self.data = [], set(), {}
+        self._words, self._open, self._is_in_cell = [], "", False
         self.feed(text)
+        self.words = "".join(self._words)
 
     def handle_starttag(self, tag, attrs):
         self.tags.add(tag)
@@ -46,7 +41,7 @@ class Shown(html.parser.HTMLParser):
         if self._open is not None:
             self.data[self._open] = data
             return
-        self.words += data
+        self._words.append(data)
         if self._is_in_cell:
             self.rows[-1][-1] += data
 

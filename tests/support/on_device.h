@@ -7,16 +7,21 @@
 
 namespace tandem::support {
 
+/// All algorithms, or briefly one of each hierarchy.
+inline std::vector<const Traversal*> walks(bool briefly) {
+    if (briefly) return {&algorithm("tiled"), &algorithm("chunked")};
+    return {algorithms().begin(), algorithms().end()};
+}
+
 /// Base of suites that run on every device (TANDEM_ON_DEVICES).
 class OnDevice : public testing::TestWithParam<std::string> {
 protected:
     Device& on = device(GetParam());
 
-    /// All algorithms; on other devices than the host, where compilation takes long, one of each hierarchy.
-    static std::vector<const Traversal*> walks() {
-        if (GetParam() != "host" && !long_form()) return {&algorithm("tiled"), &algorithm("chunked")};
-        return {algorithms().begin(), algorithms().end()};
-    }
+    /// Whether the form is short, on a device where compilation of kernels takes most of the time.
+    static bool compiles_briefly() { return GetParam() != "host" && !long_form(); }
+
+    static std::vector<const Traversal*> walks() { return support::walks(compiles_briefly()); }
 
     std::unique_ptr<Session> prepare(const Traversal& traversal, const Scene& scene,
                                      const SettingTexts& given = {}) {

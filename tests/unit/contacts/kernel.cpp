@@ -213,7 +213,9 @@ TYPED_TEST(ContactsKernel, EveryRuleAndDecisionEqualsTheReferenceLong) {
     PressureMaker<TypeParam> pressures;
     for (auto& pair : pairs) pressures.set(pair);
     const auto count = static_cast<std::uint32_t>(pairs.size());
+    std::set<ContactRule> compiled;
     for (const auto settings : rules_and_decisions()) {
+        const bool is_next = compiled.insert(settings.rule).second;
         const Expected<TypeParam> expected(pairs, settings);
         ASSERT_GT(expected.total, pairs.size() / 20);
         if (settings.decision == DecisionPrecision::none && !needs_pressures(settings.rule))
@@ -222,6 +224,7 @@ TYPED_TEST(ContactsKernel, EveryRuleAndDecisionEqualsTheReferenceLong) {
             ASSERT_GT(expected.counts.rejected, pairs.size() / 40);
         EXPECT_EQ(expected.counts.without_boundary > 0, boundaries_needed(settings.rule) > 0);
         for (auto& device : this->devices) {
+            if (!support::long_form() && !is_next && device->info().id != "host") continue; // each rule once
             SCOPED_TRACE(device->info().id + " rule " + std::to_string(static_cast<int>(settings.rule))
                          + " decision " + std::to_string(static_cast<int>(settings.decision)));
             ContactKernels<TypeParam> kernels(*device, pairs, this->group_sizes(*device).back());
