@@ -11,7 +11,6 @@ import sys
 RESULTS = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(RESULTS.parent / "python"))
 from tandem import cell
-from tandem.fields import frames_of
 from tandem.resampling import Ratio, median_interval, paired_ratio
 
 

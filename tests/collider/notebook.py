@@ -41,6 +41,7 @@ class Notebook(Case):
             (root / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(SOURCE / name, root / name)
         (root / "results").symlink_to(SOURCE / "results")
+        (root / "tests").symlink_to(SOURCE / "tests")
         (root / "build").mkdir()
         (root / "build/tandem").symlink_to(PROGRAM)
         out = self.work / "out.ipynb"

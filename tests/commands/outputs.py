@@ -9,6 +9,7 @@ import shutil
 
 from tests.program import SOURCE, Case, tandem, write_json
 
+RECORDS = SOURCE / "results/h200/paper/records/convert.jsonl"
 ONE = ("--device", "host", "--algorithm", "tiled", "--repeat", "1", "--quiet")
 
 
@@ -19,7 +20,7 @@ class Outputs(Case):
         self.mesh = self.folder / "mesh.msh"
         shutil.copy(self.good, self.mesh)
         self.records = self.folder / "records.jsonl"
-        shutil.copy(SOURCE / "results/h200/convert.jsonl", self.records)
+        shutil.copy(RECORDS, self.records)
 
     def names(self, path):
         """The file under its own name, by a symbolic link, by a hard link and by a link to a link."""
@@ -108,7 +109,7 @@ class Outputs(Case):
         )
 
     def test_pages(self):
-        plan = SOURCE / "results/h200/convert.jsonl"
+        plan = RECORDS
         self.kept(self.records, "is an input", "report", self.records, "-o", lambda name: name)
         self.kept(self.records, "is a file of records", "report", plan, "-o", lambda name: name)
         self.kept(
@@ -152,11 +153,11 @@ class Outputs(Case):
         for _ in range(2):
             self.assertEqual(tandem("run", "--mesh", self.mesh, *ONE, "--out", self.records)[0], 0)
         whole = self.records.read_bytes()
-        self.assertTrue(whole.startswith((SOURCE / "results/h200/convert.jsonl").read_bytes()))
+        self.assertTrue(whole.startswith((RECORDS).read_bytes()))
 
     def test_places_that_cannot_be_written(self):
         long, missing = self.folder / ("n" * 250), self.folder / "missing/output"
-        plan = SOURCE / "results/h200/convert.jsonl"
+        plan = RECORDS
         commands = [
             ("run", "--mesh", self.mesh, *ONE, option) for option in ("--out", "--dump-pairs", "--trace")
         ]

@@ -300,7 +300,7 @@ class Compare(Case):
         )
 
     def test_committed_records(self):
-        for name in ("plan", "convert"):
+        for name in ("plan", "paper/records/convert"):
             path = SOURCE / f"results/h200/{name}.jsonl"
             found = self.json_of(path, path)
             self.assertEqual(len({cell["label"] for cell in found["cells"]}), len(found["cells"]))

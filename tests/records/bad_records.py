@@ -13,13 +13,13 @@ from tests.program import PROGRAM, SOURCE
 
 import tandem
 
-H200 = SOURCE / "results/h200"
+RECORDS = SOURCE / "results/h200/paper/records/resident-plates.jsonl"
 
 
 class BadRecords(unittest.TestCase):
     def test_samples_that_are_no_times_are_refused(self):
         """As the program does: NaN and infinite ones are not JSON."""
-        record = json.loads((H200 / "seeds.jsonl").read_text().splitlines()[0])
+        record = json.loads((RECORDS).read_text().splitlines()[0])
         for sample, words in (
             (0, "a sample of 0 ns is not a valid time"),
             (-5, "a sample of -5 ns"),
@@ -47,7 +47,7 @@ class BadRecords(unittest.TestCase):
 
     def test_fields_of_another_type_are_one_line(self):
         """The message names the line, also where pandas finds the field."""
-        text = (H200 / "seeds.jsonl").read_text().splitlines()[0]
+        text = (RECORDS).read_text().splitlines()[0]
         good = json.loads(text)
         for place, value in (
             (("stages", "read", "waits"), 0.5),

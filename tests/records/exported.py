@@ -108,7 +108,7 @@ class Exported(Case):
         self.assertEqual(
             (status, out, errors[1:]), (2, "", [f"tandem: {torn}: has no record; name a file of records"])
         )
-        old = SOURCE / "results/h200/convert.jsonl"
+        old = SOURCE / "results/h200/paper/records/convert.jsonl"
         self.bad("cannot be written", "export", old, "--csv", self.work / "none" / "x.csv")
         self.bad("writing failed (No space left on device)", "export", old, "--csv", "/dev/full")
         record = json.loads(old.read_text().split("\n", 1)[0])

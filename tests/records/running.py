@@ -25,9 +25,8 @@ class Running(Case):
     def test_committed_cells_have_the_keys_that_a_run_lists(self):
         """Scene with digest, frames and every recorded setting; settings that are newer than the record are
         listed too."""
-        committed = (
-            self.records(SOURCE / "results/cpu/walks.jsonl")
-            + self.records(SOURCE / "results/cpu/chunk-study.jsonl")[::24]
+        committed = self.records(SOURCE / "results/cpu/walks.jsonl") + self.records(
+            SOURCE / "tests/records/chunk_sizes.jsonl"
         )
         self.assertEqual(len(committed), 20)
         for record in committed:

@@ -14,7 +14,8 @@ import subprocess
 from tests.program import LONG, PROGRAM, SMALL, SOURCE, ran, sets
 from tests.script_case import ScriptCase, called, committed, rows_of, script
 
-COMMITTED = sorted([*SOURCE.glob("results/*/*.jsonl"), *SOURCE.glob("tests/records/*.jsonl")])
+FOLDERS = "results/*", "results/h200/paper/records", "tests/records"
+COMMITTED = sorted(path for folder in FOLDERS for path in SOURCE.glob(f"{folder}/*.jsonl"))
 PACKED = "chosen.jsonl"  # which the test packs
 
 
@@ -189,8 +190,8 @@ class Scripts(ScriptCase):
             "h200/plan.jsonl",
             "h200/paper/records/cells-plates.jsonl",
             "../tests/records/chosen.jsonl",
-            "h100x2/shares.jsonl",
-            "h100x2/passage/hosts.jsonl",
+            "../tests/records/two_ranks.jsonl",
+            "h200x2/ranks.jsonl",
             "h200/profile.jsonl",
             "simulations/solver-meteor.jsonl.xz",
         ):
@@ -269,7 +270,7 @@ class Scripts(ScriptCase):
     def test_long_files(self):
         """A hundred thousand cells of one scene, each with its own setting, in bounded memory."""
         record = {
-            **committed("h200/seeds.jsonl")[0],
+            **committed("h200/paper/records/thresholds.jsonl")[0],
             "kernels": [],
             "conditions": None,
             "kernel_times": {},

@@ -90,7 +90,7 @@ class Tables(ScriptCase):
 
     def test_labels_name_the_differences(self):
         def cell(device=0, commit=None, asked=None, **settings):
-            record = json.loads(json.dumps(committed("h200/seeds.jsonl")[0]))
+            record = json.loads(json.dumps(committed("h200/paper/records/resident-plates.jsonl")[0]))
             record["settings"].update(settings)
             record["asked"] = asked or {}
             record["devices"] = [

@@ -5,7 +5,6 @@ them, scripts/tried, scripts/pictures). Also checks the committed microbenchmark
 
 import collections
 import copy
-import functools
 import json
 import re
 import shutil
@@ -14,9 +13,9 @@ import textwrap
 
 from tandem import errors, markdown
 from tests.program import SOURCE
-from tests.script_case import ScriptCase, committed, emptied, loaded, script
+from tests.script_case import ScriptCase, emptied, loaded, script
 
-answer, schedules = (loaded(f"../results/{name}.py") for name in ("h200/answer", "h100/schedules"))
+answer, partitions = (loaded(f"../results/{name}.py") for name in ("h200/answer", "scaling/partitions"))
 
 QUOTE = re.compile(r"(?s)<!-- quote: (\S+) -->\n```\w+\n(.*?)```")
 
@@ -62,7 +61,7 @@ class Pages(ScriptCase):
     def test_tables_of_pages_equal_the_records(self):
         for name, own, pages in (
             ("answer", answer.Answer().tables, answer.PAGES),
-            ("schedules", schedules.tables, [SOURCE / "results/h100/README.md"]),
+            ("partitions", partitions.committed, [SOURCE / "results/scaling/README.md"]),
         ):
             texts = own()
             for page in pages:
@@ -70,23 +69,27 @@ class Pages(ScriptCase):
                     markdown.rewrite(copied, name, texts)
                     self.assertEqual(copied.read_text(), page.read_text(), page)
         copied = self.work / "page.md"
-        copied.write_text("<!-- schedules: nothing -->\n<!-- end -->\n")
-        with self.assertRaisesRegex(errors.BadUse, "no table 'nothing'; there are: resident, published"):
-            markdown.rewrite(copied, "schedules", texts)
+        copied.write_text("<!-- partitions: nothing -->\n<!-- end -->\n")
+        with self.assertRaisesRegex(errors.BadUse, "no table 'nothing'; there are: partitioner, ghosts"):
+            markdown.rewrite(copied, "partitions", texts)
 
-    def test_composed_frames(self):
-        """By hand: 761 batches of 30 of the 22,824 body pairs, and the upload of one of the ten batches that
-        were measured."""
-        records = [
-            record for record in committed("h100/published.jsonl") if "glasses" in record["scene"]["key"]
+    def test_tables_of_partitions(self):
+        """Numbers by hand, of two benchmarks and of another one."""
+        ghosts = {"ghosts_mean": 50, "ghosts_most": 90}
+        others = {"setup_bytes_most": 5000.0, "frame_bytes_most": 2500.0, "neighbours_mean": 4}
+        found = [
+            {"name": "partition, parts/4/125/iterations:1", "real_time": 2000.0, "own_most": 110, **ghosts},
+            {"name": "ghosts, ranks/8/27", "real_time": 9.0, **ghosts, **others},
+            {"name": "refit/host/8", "real_time": 1},
         ]
-        small, part = (
-            next(r for r in records if r["settings"].get("queue_bytes") == size)
-            for size in ("4194304", "3019898880")
+        made = partitions.tables([{"run_type": "iteration", **one} for one in found])
+        self.assertEqual(
+            {name: text.splitlines()[2:] for name, text in made.items()},
+            {
+                "partitioner": ["| 4 | 125 | 2.00 | 4000.0 | 0.88 | 50 | 90 | 2.0 |"],
+                "ghosts": ["| 8 | 27 | 50 | 90 | 5.6 | 4.0 | 5 | 2.5 |"],
+            },
         )
-        middle = lambda record, *path: sorted(functools.reduce(dict.get, path, record)["samples"])[1] / 1e6
-        whole = middle(small, "total_ns") + 761 * middle(part, "stages", "write", "host_ns") / 10
-        self.assertIn(f"| {whole:,.0f} (composed)", schedules.published())
 
     def test_the_table_of_trials_equals_its_lines(self):
         tried, copy = SOURCE / "results/tried.jsonl", self.work / "page.md"

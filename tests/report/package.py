@@ -18,11 +18,13 @@ import zipfile
 import matplotlib
 import pandas
 
-from tests.program import LONG, PROGRAM, SOURCE
+from tests.program import LONG, PROGRAM, SOURCE, cells_of
 from tests.report.wheel import FOLDER, package
 
 matplotlib.use("agg")
 H200 = SOURCE / "results/h200"
+PLATES = H200 / "paper/records/resident-plates.jsonl"
+TWO_COMMITS = SOURCE / "tests/records/two_commits.jsonl.xz"
 
 
 def setUpModule():
@@ -50,7 +52,8 @@ def text_of(value):
 
 class Reading(unittest.TestCase):
     def test_cells_equal_the_table_of_export(self):
-        for committed in sorted([*H200.glob("*.jsonl"), *(SOURCE / "results/cpu").glob("*.jsonl")]):
+        files = [H200 / f"paper/records/{name}.jsonl" for name in ("backends", "convert", "precision")]
+        for committed in [*H200.glob("*.jsonl"), *(SOURCE / "results/cpu").glob("*.jsonl"), *files]:
             path = pathlib.Path(FOLDER.name) / committed.name
             lines = committed.read_text().splitlines(keepends=True)
             path.write_text("".join(lines if LONG else lines[:: -(-len(lines) // 20)]))
@@ -76,8 +79,7 @@ class Reading(unittest.TestCase):
     def test_other_frames_are_of_the_same_records(self):
         path = H200 / "plan.jsonl"
         records = tandem.read(str(path))
-        with open(path) as file:
-            raw = [json.loads(line) for line in file]
+        raw = cells_of(path.read_text())
         cell = next(
             i
             for i, record in enumerate(raw)
@@ -127,12 +129,11 @@ class Reading(unittest.TestCase):
                 )
 
     def test_several_files_and_packed_ones(self):
-        one, packed = H200 / "convert.jsonl", H200 / "seeds.jsonl"
-        other = pathlib.Path(FOLDER.name) / "seeds.jsonl.xz"
-        other.write_bytes(lzma.compress(packed.read_bytes(), preset=0))
-        cells = tandem.read([one, other]).cells
-        self.assertEqual(list(cells["file"].unique()), [str(one), str(other)])
-        self.assertEqual(len(cells), len(tandem.read(one).cells) + len(tandem.read(packed).cells))
+        cells = tandem.read([PLATES, TWO_COMMITS]).cells
+        self.assertEqual(list(cells["file"].unique()), [str(PLATES), str(TWO_COMMITS)])
+        with lzma.open(TWO_COMMITS, "rt") as packed:
+            texts = PLATES.read_text(), packed.read()
+        self.assertEqual(len(cells), sum(len(cells_of(text)) for text in texts))
 
     def test_every_result_occurs_once(self):
         """An interrupted cell, its continuation in another session, copies, and two contradicting records."""
@@ -190,7 +191,7 @@ class Reading(unittest.TestCase):
             self.assertIn("1.jsonl:2: different records of one cell in one run", str(caught.exception))
 
     def test_bad_files_are_one_line(self):
-        good = (H200 / "seeds.jsonl").read_text().splitlines()[0]
+        good = PLATES.read_text().splitlines()[0]
         without = json.dumps({name: value for name, value in json.loads(good).items() if name != "frames"})
         for text, words in (
             (f"{good}\nnot json\n", ":2: is not JSON"),
@@ -217,7 +218,7 @@ class Reading(unittest.TestCase):
             tandem.read([])
 
     def test_a_torn_line_gives_a_warning(self):
-        good = (H200 / "seeds.jsonl").read_text().splitlines()[0]
+        good = PLATES.read_text().splitlines()[0]
         with tempfile.NamedTemporaryFile("w", suffix=".jsonl") as file:
             file.write(good + "\n" + good[:100])
             file.flush()
@@ -259,14 +260,15 @@ class Comparing(unittest.TestCase):
         return file.name
 
     def test_equals_the_program(self):
-        seeds = f"{H200}/seeds.jsonl"
-        self.expect_same(f"{seeds}@4594fb1", f"{seeds}@8c7a169")
-        lines = pathlib.Path(seeds).read_text().splitlines()[:14]
+        self.expect_same(f"{TWO_COMMITS}@d09dc85", f"{TWO_COMMITS}@21143d3")
+        lines = PLATES.read_text().splitlines()[:8]
         old = self.changed(lines, lambda i, record: None)
 
         def slower(i, record):  # the same session: rounds are pairs
             total = record["total_ns"]
-            total["samples"] = [int(ns * (1 + 0.004 * (j % 7))) for j, ns in enumerate(total["samples"])]
+            total["samples"] = [
+                int(ns * (1 + 0.002 * (i + 1) * (j % 7))) for j, ns in enumerate(total["samples"])
+            ]
             if i == 3:
                 record["work"]["digest"]["a"] = "0" * 16
             if i == 4:  # too few
@@ -277,13 +279,15 @@ class Comparing(unittest.TestCase):
                 record["status"] = "failed"
 
         mine = self.expect_same(old, self.changed(lines, slower))
-        self.assertLessEqual({"another_answer", "too_few", "slower"}, set(mine.cells["verdict"]))
+        self.assertLessEqual(
+            {"another_answer", "too_few", "within_threshold", "slower"}, set(mine.cells["verdict"])
+        )
         self.assertEqual(len(mine.only_old), 1)
         self.assertEqual(len(mine.left_out), 1)
 
     def test_ties_and_large_numbers(self):
         """Rounded times tie; more pairs than the exact count supports are approximated."""
-        lines = (H200 / "seeds.jsonl").read_text().splitlines()[:3]
+        lines = PLATES.read_text().splitlines()[:3]
 
         def of(count, step, session):
             def change(i, record):
@@ -300,8 +304,8 @@ class Comparing(unittest.TestCase):
 
     def test_nothing_in_common(self):
         with self.assertRaisesRegex(tandem.RecordError, "have no cell in common"):
-            tandem.compare(H200 / "seeds.jsonl", H200 / "paper/records/thresholds.jsonl")
+            tandem.compare(PLATES, H200 / "paper/records/thresholds.jsonl")
         with self.assertRaisesRegex(tandem.RecordError, "no record of commit abc"):
-            tandem.compare(f"{H200}/seeds.jsonl@abc", H200 / "seeds.jsonl")
+            tandem.compare(f"{PLATES}@abc", PLATES)
         with self.assertRaisesRegex(tandem.RecordError, "no commit behind the @"):
-            tandem.compare(f"{H200}/seeds.jsonl@", H200 / "seeds.jsonl")
+            tandem.compare(f"{PLATES}@", PLATES)

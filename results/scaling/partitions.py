@@ -1,0 +1,56 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""partitions.py: writes the tables between <!-- partitions: NAME --> and <!-- end --> of
+results/scaling/README.md, from the microbenchmarks of the partitioner and the ghost lists
+(tests/bench/partition.cpp) in results/cpu/bench.json."""
+
+import json
+import pathlib
+import re
+import sys
+
+FOLDER = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(FOLDER.parent.parent / "python"))
+from tandem import markdown
+
+BENCHMARKS = FOLDER.parent / "cpu/bench.json"
+
+
+def _iterations(found, name):
+    """(numbers in the name, benchmark) of all runs of that name, sorted by the numbers."""
+    own = [one for one in found if one["run_type"] == "iteration" and one["name"].startswith(f"{name},")]
+    numbers = lambda one: [int(number) for number in re.findall(r"/(\d+)", one["name"])]
+    return sorted(((numbers(one), one) for one in own), key=lambda pair: pair[0])
+
+
+def _ghosts(each, one):
+    mean, most = one["ghosts_mean"], one["ghosts_most"]
+    return [f"{mean:,.0f}", f"{most:,.0f}", f"{mean / each ** (2 / 3):.1f}"]
+
+
+def tables(found):
+    """Texts by the names of their marks, from the runs of Google Benchmark."""
+    rows = {"partitioner": [], "ghosts": []}
+    for (parts, each, *_), one in _iterations(found, "partition"):
+        us, most = one["real_time"] * 1e3 / parts / each, one["own_most"] / each
+        own = [f"{parts:,}", f"{each:,}", f"{one['real_time'] / 1e3:.2f}", f"{us:.1f}", f"{most:.2f}"]
+        rows["partitioner"].append([*own, *_ghosts(each, one)])
+    for (ranks, each, *_), one in _iterations(found, "ghosts"):
+        kilobytes = [f"{one['setup_bytes_most'] / 1e3:,.0f}", f"{one['frame_bytes_most'] / 1e3:,.1f}"]
+        own = [f"{ranks:,}", f"{each:,}", *_ghosts(each, one), f"{one['neighbours_mean']:.1f}"]
+        rows["ghosts"].append([*own, *kilobytes])
+    ghosts = ["ghost bodies, mean", "most", "mean, of own^(2/3)"]
+    heads = {
+        "partitioner": ["parts", "bodies a part", "seconds", "us a body", "most bodies over mean", *ghosts],
+        "ghosts": ["ranks", "bodies a rank", *ghosts, "ranks that own them", "KB sent at the set-up, most"]
+        + ["KB a frame, most"],
+    }
+    return {name: markdown.table(heads[name], rows[name], numeric=True).rstrip("\n") for name in heads}
+
+
+def committed():
+    return tables(json.loads(BENCHMARKS.read_text())["benchmarks"])
+
+
+if __name__ == "__main__":
+    markdown.rewrite(FOLDER / "README.md", "partitions", committed())
