@@ -79,6 +79,19 @@ class Commands(Case):
                 else:
                     self.assertEqual(tandem(words[1], "--help")[0], 0)
 
+    def test_the_output_is_that_of_its_command(self):
+        """But for numbers, spaces and rounds that other work disturbs."""
+        shown = re.search(r"(?ms)^```text\n\$ (.*?)\n(.*?)^```$", (SOURCE / "README.md").read_text())
+        shape = lambda text: [
+            re.sub(r"[ -]+", " ", re.sub(r"[0-9][0-9.]*", "N", line))
+            for line in text.splitlines()
+            if line.strip() and not re.match("scene |.* on host: ", line) and "disturbed" not in line
+        ]
+        words = shlex.split(shown[1])
+        self.assertEqual(words[0], "build/tandem")
+        made = shape(self.output(*words[1:]))
+        self.assertEqual(shape(shown[2]), made)
+
     def test_python_compiles(self):
         for command in self.commands:
             words = shlex.split(command)
