@@ -46,7 +46,7 @@ endforeach()
 # simulate --pictures draws with it.
 configure_file(scripts/render ${PROJECT_BINARY_DIR}/libexec/tandem/render COPYONLY)
 install(PROGRAMS scripts/render DESTINATION libexec/tandem)
-install(DIRECTORY python/tandem DESTINATION libexec/tandem/python FILES_MATCHING PATTERN "*.py" PATTERN "*.json" PATTERN "*.toml" PATTERN "*.css" PATTERN "*.js" PATTERN "*.html"
+install(DIRECTORY python/tandem DESTINATION libexec/tandem/python FILES_MATCHING PATTERN "*.py" PATTERN "*.json" PATTERN "*.toml" PATTERN "*.css" PATTERN "*.js" PATTERN "*.html" PATTERN "*.svg"
         PATTERN "__pycache__" EXCLUDE)
 install(DIRECTORY results/paper/ DESTINATION libexec/tandem/python/tandem/paper/data FILES_MATCHING PATTERN "*.csv")
 install(FILES scripts/render DESTINATION libexec/tandem/python/tandem/paper RENAME render.py)

@@ -9,6 +9,7 @@ import json
 import lzma
 import os
 import random
+import re
 import unittest
 import unittest.mock
 
@@ -19,6 +20,7 @@ from tests.script_case import committed
 from tandem import lines
 from tandem.errors import BadUse, OutputError
 from tandem.files import replace_whole
+from tandem.pages.markup import markup
 from tandem.report import assembly
 from tandem.report.data import data_of
 from tandem.report.other_records import Simulations
@@ -207,6 +209,24 @@ class Pages(Case):
         with unittest.mock.patch.dict(os.environ):
             os.environ.pop("TANDEM_JAVASCRIPT", None)
             self.assertEqual(assembly.open_page("", True, False, beside[0], "").scripts[0], "beside")
+
+    def test_drawings_are_those_of_the_cells(self):
+        """A name in a record is no path."""
+        record = json.loads((H200 / "plan.jsonl").read_text().splitlines()[0])
+        for names, drawn in (
+            (("tiled", "chunked", "tiled"), ["chunked", "tiled"]),
+            (("embree", "../methods/tiled", "<b>"), []),
+        ):
+            path = self.work / "some.jsonl"
+            records = [{**record, "algorithm": name, "key": f"{i}"} for i, name in enumerate(names)]
+            path.write_text("".join(json.dumps(one) + "\n" for one in records))
+            text = "".join(
+                map(markup, (part.content for part in data_of(read_records([str(path)]), 1_000_000).sections))
+            )
+            self.assertEqual(re.findall("<summary><span>How (.*?) works</span></summary>", text), drawn)
+            self.assertEqual(
+                text.count('<svg xmlns="http://www.w3.org/2000/svg" class="drawing"'), len(drawn)
+            )
 
     def test_missing_libraries_end_both_commands(self):
         for command, what, named in (

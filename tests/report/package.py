@@ -39,6 +39,7 @@ class Metadata(unittest.TestCase):
         self.assertTrue(wheel.name.startswith("tandem_bvh-"), wheel.name)
         names = zipfile.ZipFile(wheel).namelist()
         self.assertIn("tandem/__init__.py", names)
+        self.assertIn("tandem/report/methods/tiled.svg", names)
         (metadata,) = (name for name in names if name.endswith("/METADATA"))
         self.assertIn("\nName: tandem-bvh\n", zipfile.ZipFile(wheel).read(metadata).decode())
 

@@ -81,7 +81,7 @@ def _made(records, differences):
     sections = [
         parts.summary(groups, sentences, words, records.notes, differences),
         parts.Section("charts", "Charts", is_hidden=True),
-        *([parts.cells(rows)] if rows else []),
+        *([parts.cells(rows, {cell.algorithm for cell in cells})] if rows else []),
         *([parts.ceilings(records.ceilings)] if records.ceilings else []),
     ]
     data = {

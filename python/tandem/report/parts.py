@@ -5,6 +5,7 @@ from ..pages.frame import Section
 from ..pages.markup import element, items, paragraphs
 from ..pages.tables import table
 from .cells import COLUMNS
+from .methods import drawings_of
 
 SHOWN_GROUPS = 10  # of the summary; readers open the others
 HOW = (
@@ -31,10 +32,10 @@ def summary(groups, sentences, words, notes, differences):
     return Section("summary", "Summary", [*shown, element("p", HOW, class_="quiet")])
 
 
-def cells(rows):
-    return Section(
-        "cells", "Every cell", table("Every cell", COLUMNS, rows, heading=False, notes=[CELLS], sorts=True)
-    )
+def cells(rows, algorithms):
+    """`rows`: of all cells; `algorithms`: names of theirs."""
+    shown = table("Every cell", COLUMNS, rows, heading=False, notes=[CELLS], sorts=True)
+    return Section("cells", "Every cell", [*drawings_of(algorithms), shown])
 
 
 def ceilings(devices):
