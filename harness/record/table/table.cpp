@@ -236,7 +236,8 @@ std::string common_line(std::span<const Row> rows, std::vector<TableColumn> colu
             common.push_back(counted(text, column.head));
     }
     const auto frames = fmt::to_string(rows.front().measurement->candidate_pairs.size());
-    return fmt::format("{}; {}{}", fmt::join(common, ", "), counted(frames, "frames"),
+    return fmt::format("{}{}{}{}", fmt::join(common, ", "), common.empty() ? "" : "; ",
+                       counted(frames, "frames"),
                        on_one_group(rows) ? " on " + name_of(rows.front().cell->devices) : "");
 }
 

@@ -37,7 +37,7 @@ def _is_the_fastest(cells):
 
 def which_text(cells):
     """What the first of Named cells is, to be put behind its name: ", the fastest"."""
-    lead = ", the fastest" if _is_the_fastest(cells) else ", which has the lowest median"
+    lead = ", the fastest" if _is_the_fastest(cells) else ", which leads"
     return lead if len(cells) > 1 else ""
 
 
@@ -46,7 +46,7 @@ def lead_sentence(cells, of=""):
     first, *rest = cells
     if not rest:
         return f"{first.name} takes {digits(first.ms)} ms a frame; there is nothing to compare it with."
-    lead = "is the fastest" if _is_the_fastest(cells) else "has the lowest median"
+    lead = "is the fastest" if _is_the_fastest(cells) else "leads"
     return f"{first.name} {lead} of {len(cells)}{of} with {digits(first.ms)} ms a frame; the next, {rest[0].name}, {compared_text(rest[0].ranked)}."
 
 
@@ -63,5 +63,5 @@ def title(cells, answers_differ):
     than = f"{digits(second.ratio.value)} times as long {interval_text(second.ratio, second.has_interval)}"
     if second.has_interval and not second.is_told_apart:
         return f"{first.name} and the next are not told apart: {than}"
-    lead = "is the fastest" if _is_the_fastest(cells) else "has the lowest median"
+    lead = "is the fastest" if _is_the_fastest(cells) else "leads"
     return f"{first.name} {lead}; the next takes {than}"

@@ -88,7 +88,7 @@ def _wins(groups, cells):
 
 
 def _won(name, won, contested):
-    """A sentence on an algorithm that has the lowest median in so many of `contested` comparisons."""
+    """A sentence on an algorithm that leads in so many of `contested` comparisons."""
     name, ratios, significant = (
         one_line(name, 100),
         [ratio for ratio, _ in won],
@@ -102,7 +102,7 @@ def _won(name, won, contested):
     if significant == len(won):
         return f"{name} is the fastest in {where}; the best other algorithm takes {than} times as long."
     apart = f"told apart from it in {significant} of these" if significant else "not told apart from it"
-    return f"{name} has the lowest median in {where}; the best other algorithm takes {than} times as long, and is {apart}."
+    return f"{name} leads in {where}; the best other algorithm takes {than} times as long, and is {apart}."
 
 
 def summary_sentences(groups, cells):
