@@ -94,7 +94,8 @@ void LocalSampler::find_deep_contact(std::size_t index, const FrameResult& resul
     if (decided(cell_.team, !searched)) {
         const auto contacts = result.download_contacts();
         if (!is_first(cell_.team)) return;
-        searched.emplace(deepest_beyond_body(scene_, *range_.frame(index), range_.first() + index, contacts));
+        searched = SearchedContacts{
+            deepest_beyond_body(scene_, *range_.frame(index), range_.first() + index, contacts)};
     }
     if (is_first(cell_.team)) out_.deep_contact = searched->deepest;
 }
