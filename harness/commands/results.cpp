@@ -49,11 +49,11 @@ void print_answers(std::span<const CellResult* const> measured) {
 }
 
 void print_notes(std::span<const CellResult* const> measured, const Scene& scene) {
-    Shared warnings;
+    std::vector<std::string> warnings; // each once, although several cells may have it
     for (const auto* result : measured)
         for (const auto& line : answer_warnings(result->measurement, scene))
-            add(warnings, line, describe(*result->cell));
-    for (const auto& [text, names] : warnings) put("{}\n", text);
+            if (std::ranges::find(warnings, line) == warnings.end()) warnings.push_back(line);
+    for (const auto& line : warnings) put("{}\n", line);
     if (const auto text = disturbed_text(measured); !text.empty()) put_paragraph(text);
     for (const auto* result : measured)
         if (const auto text = doubts(*result); !text.empty())

@@ -63,8 +63,8 @@ std::vector<RankedCell> ranked_to(std::size_t fastest, std::span<const Row> rows
 }
 
 /// The cell with the lowest median is the fastest, unless another one is faster by the median of ratios,
-/// which are those that the sentence states. The steps end, because ratios of three cells need
-/// not agree.
+/// which are those that the sentence states. The number of steps is limited, because the ratios of three
+/// cells can form a circle.
 Verdict verdict_of(std::span<const Row> rows, std::vector<std::size_t> group) {
     std::ranges::sort(group, {}, [&](std::size_t row) {
         return std::pair(median_ns(*rows[row].measurement), std::string_view(rows[row].key));

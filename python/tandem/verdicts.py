@@ -84,7 +84,7 @@ def computed(cells, same_work=True):
     if not order:
         return Verdict()
     first = order[0]
-    for _ in order:  # the steps end, because ratios of three cells need not agree
+    for _ in order:  # at most so many steps: the ratios of three cells can form a circle
         ranked = _ranked(cells, first, order)
         if len(order) < 2 or ranked[1].ratio.value >= 1:
             break
