@@ -22,7 +22,7 @@ struct Environment {
 /// unknown.
 Environment environment();
 
-/// The output of `tandem --version`: "tandem 0.1.0, commit 0123456789ab, dirty, g++ 12.2.0, with Embree
+/// The output of `tandem --version`: "tandem 0.2.0, commit 0123456789ab, dirty, g++ 12.2.0, with Embree
 /// 3.13.5, ...".
 std::string version_line();
 

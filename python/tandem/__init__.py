@@ -48,7 +48,7 @@ _NEED_COMPILED = ("_core", "answers", "collider", "frames", "meshes")
 _COMPILED = importlib.util.find_spec(f"{__name__}._core") is not None
 
 __all__ = sorted(name for name, module in _MODULE_OF.items() if _COMPILED or module not in _NEED_COMPILED)
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 
 def __getattr__(name):
