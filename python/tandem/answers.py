@@ -159,7 +159,7 @@ class Answer:
     def contacts(self) -> Contacts:
         """Contacts of the pairs (see Contacts), in host memory. The contact rule determines which pairs have
         some: with the default, "sat", all that meet; other rules need boundary faces
-        (docs/user/python_answers.md)."""
+        (docs/user/python.md)."""
         pairs, *columns, _ = self._core.contacts()
         return Contacts(self._numbering.rows_of(pairs), *columns)
 
