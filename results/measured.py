@@ -3,6 +3,7 @@
 
 import functools
 import json
+import lzma
 import pathlib
 import re
 import statistics
@@ -15,8 +16,9 @@ from tandem.resampling import Ratio, median_interval, paired_ratio
 
 
 def records(path):
-    """The records of cells of a file."""
-    found = map(json.loads, path.read_text().splitlines())
+    """The records of cells of a file, which may be packed (.xz)."""
+    text = (lzma.open(path, "rt") if path.suffix == ".xz" else path.open()).read()
+    found = map(json.loads, text.splitlines())
     return [record for record in found if record.get("kind") != "verdict"]
 
 

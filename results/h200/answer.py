@@ -27,6 +27,7 @@ from measured import (
 )
 from tandem import markdown
 
+SECOND = FOLDER / "second_card"
 PAGES = RESULTS.parent / "README.md", FOLDER / "README.md", FOLDER / "kernels.md"
 STAGES = {"refit": ["refit"], "walk": ["seed", "traverse", "balance"], "contacts": ["contact"]}
 OTHERS = "rest of the device"
@@ -95,10 +96,10 @@ class Answer:
         return self._table(METHODS, shown)
 
     def _stages(self):
-        """Microseconds of the device per frame by stage, k = 18, and launches; without the paper's schedule, whose
-        walk is nearly all of its time."""
+        """Microseconds of the device per frame by stage, k = 18, and launches: a scene of few contacts, of many,
+        and a small one; without the paper's schedule, whose walk is nearly all of its time."""
         rows = []
-        for scene in self.scenes:
+        for scene in (self.scenes[0], *self.scenes[-2:]):
             for method, name in METHODS.items():
                 if method == "paper":
                     continue
@@ -124,8 +125,28 @@ class Answer:
             "frame": self._times(),
             "frame ratios": self._ratios(),
             "stages": self._stages(),
+            "second card": self._second(),
             "kernels": kernel_table(records(FOLDER / "profile.jsonl")),
         }
+
+    def _second(self):
+        """How the same plan and claims came out on another card."""
+        other = Answer(SECOND / "plan.jsonl.xz")
+        rows = [(scene, k) for scene in self.scenes for k in ("8", "18")]
+        best = lambda answer, row: min(METHODS, key=lambda method: answer.cells[*row, method].median_ms)
+        same = sum(best(self, row) == best(other, row) for row in rows)
+        slower = {
+            row[0]: max(other.cells[*row, m].median_ms / self.cells[*row, m].median_ms for m in METHODS)
+            for row in rows
+        }
+        worst, calm = max(slower, key=slower.get), sorted(slower.values())[-2]
+        apart = verdicts(SECOND / "claims.csv"), verdicts(FOLDER / "paper/claims.csv")
+        both = [claim for claim in apart[0] if "untested" not in (apart[0][claim], apart[1][claim])]
+        changed = sum(apart[0][claim] != apart[1][claim] for claim in both)
+        return f"""\
+The plan also ran on another card of the same model, by {other.origin.partition(", ")[2]} (`second_card/`). The fastest method is the same in {same} of {len(rows)} rows. Times are at
+most {calm:.2f} times as long there, but up to {slower[worst]:.2f} times in {worst.partition(",")[0]}, where the host of that card sets the pace. Of {len(both)} claims of the paper
+that are decided on both cards, {changed} have another verdict there."""
 
     def _medians(self):
         """Milliseconds per frame with k = 18; the least of a row is bold."""
@@ -215,6 +236,12 @@ is missed: this is [proved](algorithms/bounds/README.md), and [tested](docs/user
             ax.legend(loc="upper right", frameon=False)
             figure.savefig(path, metadata={"Date": None})
             plt.close(figure)
+
+
+def verdicts(path):
+    """The verdict of each claim over all its scenes, or its only one."""
+    with path.open() as file:
+        return {row["claim"]: row["verdict"] for row in csv.DictReader(file)}
 
 
 def kernel_table(found):

@@ -48,7 +48,7 @@ def targets(fields, scene):
     )
     if least is None:
         return
-    factor = 1.5 * rule.get("borderline", 1)
+    factor = 1.5 * rule.get("borderline", 1) * rule.get("varies", 1)
     ends = [end for end in (least, most) if math.isfinite(end)]
     inside = math.sqrt(least * most) if len(ends) == 2 and least > 0 else ends[0] * factor
     if ends == [most]:
@@ -131,6 +131,9 @@ class Verdicts(unittest.TestCase):
         self.assertEqual(judged(close(1), {"at_least": "paper"}, ())[0], UNTESTED)
         self.assertEqual(judged(close(1.8), {"at_least": 2, "borderline": 1.25}), (NOT_SETTLED, "borderline"))
         self.assertEqual(judged(close(1.5), {"at_least": 2, "borderline": 1.25})[0], DIFFERS)
+        varied = {"at_least": 2, "varies": 1.5}
+        for value, verdict in ((3.2, AGREES), (2.5, NOT_SETTLED), (1.5, NOT_SETTLED), (1.2, DIFFERS)):
+            self.assertEqual(judged(close(value), varied)[0], verdict)
         self.assertEqual(
             judged(Measured(9, 9, 9, 1, basis="one sample"), {"at_least": 2}), (NOT_SETTLED, "one sample")
         )

@@ -68,13 +68,17 @@ def judged(measured, rule, paper=()):
     if not measured.is_exact and measured.samples < 2:
         return NOT_SETTLED, "disturbed samples only" if measured.disturbed else "one sample"
     least, most = allowed
-    factor = rule.get("borderline", 1)
-    if least <= measured.low and measured.high <= most:
+    factor, varies = rule.get("borderline", 1), rule.get("varies", 1)
+    low, high = measured.low / varies, measured.high * varies
+    if least <= low and high <= most:
         return (NOT_SETTLED, rule["proves"]) if "proves" in rule else (AGREES, "")
-    if measured.high < least / factor or measured.low > most * factor:
+    if high < least / factor or low > most * factor:
         return DIFFERS, ""
-    within = measured.high < least or measured.low > most
-    return NOT_SETTLED, "borderline" if within else "the interval contains a limit of the rule"
+    if high < least or low > most:
+        return NOT_SETTLED, "borderline"
+    if least <= measured.low and measured.high <= most or measured.high < least or measured.low > most:
+        return NOT_SETTLED, f"sessions differ by up to {varies} times"
+    return NOT_SETTLED, "the interval contains a limit of the rule"
 
 
 def together(verdicts, how):
