@@ -7,6 +7,7 @@ import json
 import subprocess
 
 from tests.program import PROGRAM, SOURCE, Case
+from tests.script_case import loaded
 
 # Runs the program, then edits the file of records.
 WRAPPER = """#!/usr/bin/python3
@@ -68,6 +69,14 @@ class ConformancePage(Case):
         self.assertIn("Presets: tiled (resident).", page)
         self.assertNotIn("## host", page)
         self.assertRegex(page, r"\| host [^|]* \| float, double: k = 8 \| 2 \| 2 \|")
+
+    def test_settings_in_words(self):
+        script = loaded("conformance")
+        every = script.columns_of(script.EVERY_K)
+        self.assertEqual(script.settings_of(every), "float, double: every k; groups of 64: k = 26")
+        some = ["k = 8, float", "k = 18, float", "k = 18, groups of 64"]
+        self.assertEqual(script.settings_of(some), "float: k = 8, 18; groups of 64: k = 18")
+        self.assertEqual(script.settings_of([]), "none")
 
     def test_wrong(self):
         code, text, errors, page = self.conformance(self.other())
