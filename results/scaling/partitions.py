@@ -41,7 +41,14 @@ def tables(found):
         rows["ghosts"].append([*own, *kilobytes])
     ghosts = ["ghost bodies, mean", "most", "mean, of own^(2/3)"]
     heads = {
-        "partitioner": ["parts", "bodies per part", "seconds", "us per body", "most bodies over mean", *ghosts],
+        "partitioner": [
+            "parts",
+            "bodies per part",
+            "seconds",
+            "us per body",
+            "most bodies over mean",
+            *ghosts,
+        ],
         "ghosts": ["ranks", "bodies per rank", *ghosts, "ranks that own them", "KB sent at the set-up, most"]
         + ["KB per frame, most"],
     }
