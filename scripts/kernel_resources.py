@@ -12,9 +12,9 @@ HEAD = """# Resources of kernels on AMD GPUs
 
 For developers of kernels: what each kernel takes of an AMD GPU, as clang 15 compiles it at k = 18 in groups of 64.
 
-`scripts/compile_kernels --table docs/developer/kernel_resources.md` writes this page; no device is needed, and none was used.
-A cell is *vector registers / scalar registers / bytes of local memory*. Registers that do not fit are *spilled* to memory: a
-cell with spills adds their number, and one with private memory adds its bytes per work-item.
+`scripts/compile_kernels --table PAGE.md` writes this page; no device is needed, and none was used. A cell is
+*vector registers / scalar registers / bytes of local memory*. Registers that do not fit are *spilled* to memory: a cell with spills adds
+their number, and one with private memory adds its bytes per work-item.
 """
 
 

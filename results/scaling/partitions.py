@@ -41,9 +41,16 @@ def tables(found):
         rows["ghosts"].append([*own, *kilobytes])
     ghosts = ["ghost bodies, mean", "most", "mean, of own^(2/3)"]
     heads = {
-        "partitioner": ["parts", "bodies a part", "seconds", "us a body", "most bodies over mean", *ghosts],
-        "ghosts": ["ranks", "bodies a rank", *ghosts, "ranks that own them", "KB sent at the set-up, most"]
-        + ["KB a frame, most"],
+        "partitioner": [
+            "parts",
+            "bodies per part",
+            "seconds",
+            "us per body",
+            "most bodies over mean",
+            *ghosts,
+        ],
+        "ghosts": ["ranks", "bodies per rank", *ghosts, "ranks that own them", "KB sent at the set-up, most"]
+        + ["KB per frame, most"],
     }
     return {name: markdown.table(heads[name], rows[name], numeric=True).rstrip("\n") for name in heads}
 

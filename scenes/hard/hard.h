@@ -49,8 +49,12 @@ struct HardFamily { // NOLINT(clang-analyzer-optin.performance.Padding)
     std::string_view summary;
     HardKnob knob;
     HardTruth truth;
-    std::string_view metric; ///< quantity that changes with the difficulty
-    std::string_view fails;  ///< known failures
+    /// Quantities that change with the difficulty. MISS: missed pairs; FPR: candidates per pair that meets;
+    /// CLS: the relation confused; SYM, PERM, INV: changes under mirroring, renumbering and scaling; DREL,
+    /// DULP: the error of the depth, relative and in units of the size; ANG: the angle to the nearest best
+    /// normal; PT: the distance of a contact point; VOL: the volume.
+    std::string_view metric;
+    std::string_view fails; ///< known failures
     /// Makes pair number `index`. Pairs differ only by values from `random` and by the index.
     HardPair (*pair)(Random& random, double difficulty, std::uint64_t index) = nullptr;
     bool twins = false; ///< pairs 2i and 2i + 1 have the same random numbers

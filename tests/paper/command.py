@@ -25,7 +25,6 @@ from tandem.paper.measuring import chosen, steps_of
 COMMITTED = SOURCE / "results/h200/paper"
 FILES = [
     "index.html",
-    "verdicts.md",
     "claims.csv",
     *(f"table{i}.csv" for i in range(1, 8)),
     *(f"figure{i}.{kind}" for i in range(1, 15) for kind in ("svg", "csv")),

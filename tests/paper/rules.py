@@ -6,11 +6,14 @@ are too small."""
 
 import json
 import pathlib
+import re
 import tempfile
 import unittest
 
 from tests.paper import records as made
-from tandem.paper import claims, headline, summary
+from tandem.pages.markup import markup
+from tandem.paper import claims, headline
+from tandem.paper.claim_groups import claim_groups, errata
 from tandem.paper.folder import Folder
 from tandem.paper.measures import Declared
 from tandem.paper.rules import (
@@ -89,9 +92,8 @@ class Rules(unittest.TestCase):
         self.assertEqual(claims.judge(kept, folder).verdict, AGREES)
         release = {**self.fields["equation-2"], "bytes": 4000}
         self.assertEqual(claims.judge(release, folder).verdict, AGREES, "L = 32, as the release has it")
-        summary.write(folder, claims.all_claims(folder))
-        text = (folder.path / "verdicts.md").read_text()
-        self.assertIn("**erratum** | glasses: 27 chunks of a glass: equation 2 as printed", text)
+        text = re.sub("<[^>]*>", "", markup(errata(claims.all_claims(folder))))
+        self.assertIn("glasses: 27 chunks of a glass – erratum (equation 2 as printed", text)
 
     def test_provisional_verdicts_say_so(self):
         fields = self.fields["collision-share"]
@@ -105,8 +107,8 @@ class Rules(unittest.TestCase):
         found = claims.judge(fields, folder)
         self.assertEqual(found.verdict, AGREES)
         self.assertTrue(found.lines[0].reason.startswith("provisional: "), found.lines[0].reason)
-        summary.write(folder, claims.all_claims(folder))
-        self.assertIn("**agrees** (provisional)", (folder.path / "verdicts.md").read_text())
+        text = re.sub("<[^>]*>", "", markup(claim_groups([found], "claims")))
+        self.assertRegex(text, r"funnel: [0-9.]+ %.* – agrees \(provisional: ")
         self.assertEqual(
             {
                 name

@@ -114,6 +114,11 @@ class Pages(ScriptCase):
         bad.write_text(json.dumps({**line, "count": 1}) + "\n" + json.dumps({**line, "count": 2222}) + "\n")
         self.assertIn("2,222", script("tried", bad)[1])  # the newest of each
         self.assertEqual(len(script("tried", bad)[1].splitlines()), 3)
+        parts = [{"what": "fails: b", "count": 3, "lost": 1}, {"what": "fails: c", "count": 40, "hangs": 2}]
+        none = {"lost": 0, "crashes": 0, "hangs": 0, "others": 0}
+        bad.write_text("".join(json.dumps({**line, **none, "unit": "runs", **part}) + "\n" for part in parts))
+        self.assertIn("| fails: b, c | 43 runs |", script("tried", bad)[1])
+        self.assertEqual(script("tried", bad)[1].splitlines()[2].split(" | ")[3:5], ["3", ""])
 
     def test_the_picture_of_the_pages_equals_the_records(self):
         """Compares words, which are comments beside their outlines; the outlines depend on the library."""

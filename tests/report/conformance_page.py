@@ -7,6 +7,7 @@ import json
 import subprocess
 
 from tests.program import PROGRAM, SOURCE, Case
+from tests.script_case import loaded
 
 # Runs the program, then edits the file of records.
 WRAPPER = """#!/usr/bin/python3
@@ -67,27 +68,33 @@ class ConformancePage(Case):
         self.assertEqual((code, errors), (0, ""), text)
         self.assertIn("Presets: tiled (resident).", page)
         self.assertNotIn("## host", page)
-        self.assertRegex(page, r"\| host [^|]* \| float: k = 8; double: k = 8 \| 2 \| 2 \|")
+        self.assertRegex(page, r"\| host [^|]* \| float, double: k = 8 \| 2 \| 2 \|")
+
+    def test_settings_in_words(self):
+        script = loaded("conformance")
+        every = script.columns_of(script.EVERY_K)
+        self.assertEqual(script.settings_of(every), "float, double: every k; groups of 64: k = 26")
+        some = ["k = 8, float", "k = 18, float", "k = 18, groups of 64"]
+        self.assertEqual(script.settings_of(some), "float: k = 8, 18; groups of 64: k = 18")
+        self.assertEqual(script.settings_of([]), "none")
 
     def test_wrong(self):
         code, text, errors, page = self.conformance(self.other())
         self.assertEqual((code, errors), (1, ""), text)
         self.assertIn("| tiled | resident | 7 missing | 7 missing |", page)
-        self.assertRegex(page, r"\| host [^|]* \| float: k = 8; double: k = 8 \| 2 \| 0 \|")
+        self.assertRegex(page, r"\| host [^|]* \| float, double: k = 8 \| 2 \| 0 \|")
 
     def test_failing(self):
         code, text, _, page = self.conformance(self.other(end=True))
         self.assertEqual(code, 1, text)
-        self.assertIn("- k = 8, float; k = 8, double: tandem: no memory", page)
+        self.assertIn("- float, double: k = 8: tandem: no memory", page)
 
     def test_a_driver_that_ends_the_process(self):
         """The cells of the other algorithms are on the page."""
         code, text, errors, page = self.conformance(self.other(crash=True), "--algorithm", "tiled,leaf_query")
         self.assertEqual((code, errors), (1, ""), text)
-        self.assertIn(
-            "- k = 8, float; k = 8, double: leaf_query: the driver ended the process (SIGSEGV)", page
-        )
-        self.assertRegex(page, r"\| host [^|]* \| float: k = 8; double: k = 8 \| 2 \| 2 \|")
+        self.assertIn("- float, double: k = 8: leaf_query: the driver ended the process (SIGSEGV)", page)
+        self.assertRegex(page, r"\| host [^|]* \| float, double: k = 8 \| 2 \| 2 \|")
 
     def test_an_empty_answer_shows_nothing(self):
         code, text, errors, page = self.conformance(self.other(empty=True))
@@ -116,7 +123,7 @@ class ConformancePage(Case):
         code, _, _, page = others()
         self.assertEqual(code, 0)
         self.assertIn("2 cells were right on two devices or more; their digests are equal in 2.", page)
-        self.assertIn("| other device | float: k = 8; double: k = 8 | 2 | 2 |", page)
+        self.assertIn("| other device | float, double: k = 8 | 2 | 2 |", page)
         code, text, _, page = others(digests={"tiled resident": "{}"})
         self.assertEqual(code, 1)
         self.assertIn("tiled resident, k = 8, float: 2 different digests", text)

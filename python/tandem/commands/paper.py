@@ -81,18 +81,13 @@ def check_outputs(path):
     """Raises BadUse if a file of the page cannot be written, or is a file of records."""
     folder = pathlib.Path(path)
     if folder.is_dir():
-        for output in (
-            *folder.glob("*.csv"),
-            *folder.glob("*.svg"),
-            folder / "index.html",
-            folder / "verdicts.md",
-        ):
+        for output in (*folder.glob("*.csv"), *folder.glob("*.svg"), folder / "index.html"):
             check_output(output)
 
 
 def build(path):
     """Makes all files. Returns a line with their numbers. Raises lines.RecordError, OSError."""
-    from ..paper import claims, figures, page, pictures, simulation_figures, summary
+    from ..paper import claims, figures, page, pictures, simulation_figures
     from ..paper.folder import Folder
 
     folder = Folder(path)
@@ -105,7 +100,6 @@ def build(path):
     found = claims.all_claims(folder)
     write_claims(folder.path, found)
     page.write(folder, made, all_figures, found)
-    summary.write(folder, found)
     gaps = sum(bool(figure.missing) for figure in all_figures)
     verdicts = ", ".join(f"{count} {verdict}" for verdict, count in claims.counts(found).items())
     return f"{folder.path / 'index.html'}: 7 tables, {len(all_figures) - gaps} of {len(all_figures)} figures, claims: {verdicts}"
