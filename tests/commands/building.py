@@ -7,6 +7,7 @@ import os
 import shutil
 import subprocess
 import tempfile
+import unittest
 
 from tests.program import BUILT, LONG, PROGRAM, Case, tandem
 
@@ -47,6 +48,7 @@ class Building(Case):
         for process in started:
             self.right(process)
 
+    @unittest.skipUnless(LONG, "the next test compiles at once, too")
     def test_processes(self):
         for _ in range(REPEATS):
             self.at_once(self.cold())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# test: cost=5
+# test: cost=8 full=25
 """Rates of false and missed changes in synthetic records."""
 
 import math
@@ -11,6 +11,9 @@ import numpy
 from tandem.comparison import cells, matching
 from tandem.ratio import Ratio
 from tests.compare.cells import record
+from tests.program import LONG
+
+TRIALS = 2000 if LONG else 600
 
 
 class Rates(unittest.TestCase):
@@ -41,7 +44,7 @@ class Rates(unittest.TestCase):
         return cells.RecordedCells("", "", made, [], [], len(made), 0, False)
 
     def found(
-        self, start, times=2000, *, paired=False, cells_each=1, rounds=10, noise=0.02, drift=0.0, change=0.0
+        self, start, times=TRIALS, *, paired=False, cells_each=1, rounds=10, noise=0.02, drift=0.0, change=0.0
     ):
         """The fraction of trials in which any change is reported, however small."""
         random, count = numpy.random.default_rng(start), 0
@@ -68,7 +71,7 @@ class Rates(unittest.TestCase):
             (12, 50 / 1024, {"paired": True, "drift": 0.2}),  # shared by both of a pair
             (13, 0.0433, {}),
         ):  # 10 against 10, U of 23 or less
-            self.assertAlmostEqual(self.found(start, **how), fraction, delta=self.error(fraction, 2000))
+            self.assertAlmostEqual(self.found(start, **how), fraction, delta=self.error(fraction, TRIALS))
 
     def test_many_cells_together_raise_no_more_false_alarms(self):
         for paired in (False, True):
@@ -86,8 +89,10 @@ class Rates(unittest.TestCase):
             error = 0.02 * math.sqrt(math.pi / rounds)
             change = math.log1p(matching.least_effect(error, 0.05))
             for start, paired in ((16, True), (17, False)):
-                fraction = self.found(start, 1000, paired=paired, rounds=rounds, change=change)
-                self.assertTrue(0.8 - self.error(0.8, 1000) < fraction < 0.99, (rounds, paired, fraction))
+                fraction = self.found(start, TRIALS // 2, paired=paired, rounds=rounds, change=change)
+                self.assertTrue(
+                    0.8 - self.error(0.8, TRIALS // 2) < fraction < 0.99, (rounds, paired, fraction)
+                )
 
     def test_pairs_are_insensitive_to_drift(self):
         drifting = {"noise": 0.005, "drift": 0.1, "change": 0.02}

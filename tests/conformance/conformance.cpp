@@ -223,8 +223,8 @@ protected:
         auto& on = device(device_id);
         const auto rows = possible(pairwise(axes_of(traversal)));
         ASSERT_GE(rows.size(), 2 * parts);
-        // Where kernels must be compiled, the short form has every second row of its part.
-        const auto step = device_id == "host" || long_form() ? parts : 2 * parts;
+        // Where kernels must be compiled, the short form has every fourth row of its part.
+        const auto step = device_id == "host" || long_form() ? parts : 4 * parts;
         for (auto i = part; i < rows.size(); i += step) {
             std::uint64_t pairs = 0;
             std::uint64_t contacts = 0;

@@ -161,7 +161,7 @@ class Figures(ScriptCase):
             for i, record in enumerate(bare)
         ]
         many = [{**bare[0], "settings": {**bare[0]["settings"], "group_size": str(i)}} for i in range(205)]
-        folder = self.work / "lacking"
+        folder, drawn = self.work / "lacking", set()
         for name, cells, figure, expected in (
             ("bare", bare, "pareto", "nothing to draw: no cell was asked for this"),
             ("one", bare[:1], "pareto", "one cell"),
@@ -173,7 +173,9 @@ class Figures(ScriptCase):
             ("many", many, "pareto", "(205 values)"),
         ):
             with self.subTest(name):
-                self.output_of("figures", self.file(f"{name}.jsonl", cells), folder)
+                if name not in drawn:
+                    drawn.add(name)
+                    self.output_of("figures", self.file(f"{name}.jsonl", cells), folder)
                 self.assertIn(expected, (folder / f"{figure}.svg").read_text())
         self.assertIn("group_size", (folder / "pareto.csv").read_text().splitlines()[0].split(","))
         wrong = {**records[1], "status": "wrong"}
