@@ -245,12 +245,12 @@ def verdicts(path):
 
 
 def kernel_table(found):
-    """The kernels that take at least 10 % of the time of their frame's kernels."""
+    """The kernels that take at least 15 % of the time of their frame's kernels."""
     rows = []
     for record in found:
         name = " ".join(filter(None, (record["algorithm"], record["preset"])))
         for kernel in record["kernels"]:
-            if kernel["share"] < 0.1:
+            if kernel["share"] < 0.15:
                 continue
             counters = kernel["counters"]
             rows.append(
