@@ -86,8 +86,8 @@ class Pages(ScriptCase):
         self.assertEqual(
             {name: text.splitlines()[2:] for name, text in made.items()},
             {
-                "partitioner": ["| 4 | 125 | 2.00 | 4000.0 | 0.88 | 50 | 90 | 2.0 |"],
-                "ghosts": ["| 8 | 27 | 50 | 90 | 5.6 | 4.0 | 5 | 2.5 |"],
+                "partitioner": ["| 4 | 125 | 2.00 | 4000.0 | 0.88 | 50 | 90 |"],
+                "ghosts": ["| 8 | 27 | 50 | 90 | 4.0 | 5 | 2.5 |"],
             },
         )
 
