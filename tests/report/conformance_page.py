@@ -77,6 +77,14 @@ class ConformancePage(Case):
         self.assertEqual(script.settings_of(some), "float: k = 8, 18; groups of 64: k = 18")
         self.assertEqual(script.settings_of([]), "none")
 
+    def test_other_contacts_with_the_right_pairs(self):
+        agreement = {"missing": 0, "extra": 0, "contact_frames_wrong": 2, "digest": {"count": 3}}
+        outcome = lambda **more: loaded("conformance").outcome(
+            {"status": "wrong", "agreement": {**agreement, **more}}
+        )
+        self.assertEqual(outcome(), "other contacts")
+        self.assertEqual(outcome(extra=4), "4 extra")
+
     def test_wrong(self):
         code, text, errors, page = self.conformance(self.other())
         self.assertEqual((code, errors), (1, ""), text)
