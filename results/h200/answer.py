@@ -248,7 +248,7 @@ def kernel_table(found):
     """The kernels that take at least 15 % of the time of their frame's kernels."""
     rows = []
     for record in found:
-        name = " ".join(filter(None, (record["algorithm"], record["preset"])))
+        name = METHODS[method_of(record)]
         for kernel in record["kernels"]:
             if kernel["share"] < 0.15:
                 continue
@@ -265,7 +265,7 @@ def kernel_table(found):
                     counters["top_stall"].replace("_", " "),
                 ]
             )
-    heads = "scene: walk|kernel|us per frame|of the kernels|times its floor|issue slots|occupancy"
+    heads = "scene: method|kernel|us per frame|of the kernels|times its floor|issue slots|occupancy"
     return markdown.table([*heads.split("|"), "main stall"], rows).rstrip("\n")
 
 
