@@ -45,7 +45,8 @@ class Rules:
         included = of_page["What a room may include"]
         self.rooms = {room: set(words(others)) for own, others in included for room in words(own)}
         self.limits = {
-            tuple(words(own)): (others.split()[0], words(others)) for own, others in of_page["Narrower limits"]
+            tuple(words(own)): (others.split()[0], words(others))
+            for own, others in of_page["Narrower limits"]
         }
         self.elsewhere = {words(name)[0] for name, _ in of_page["Headers found elsewhere"]}
         # Number of the step of each folder or file of a room.

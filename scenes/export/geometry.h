@@ -22,13 +22,13 @@ struct GeometryParts {
     FindSurfaces surfaces{}; ///< empty: the geometry has no contact surfaces
 };
 
-/// Frames of a scene as JSON text for a page that draws them, of about 4 MB at most. Leaves out content beyond
-/// the budget and adds notes about it. `frames` has at least one frame, in ascending order.
+/// Frames of a scene as JSON text for a page that draws them, of about 4 MB at most. Leaves out content
+/// beyond the budget and adds notes about it. `frames` has at least one frame, in ascending order.
 ///
 /// Format: one object. Every array of numbers is a text: little-endian bytes in base64. Points have 16 bits
 /// per coordinate, as fractions of a box: coordinate = `lower` + `size` * number / 65535.
-/// - `name`, `key`, `units`: the scene's own. `frames`: numbers of the frames shown, of `of_frames` requested.
-///   `bodies` of `of_bodies`, `tetrahedra`. `times` of the frames, where the scene has times.
+/// - `name`, `key`, `units`: the scene's own. `frames`: numbers of the frames shown, of `of_frames`
+///   requested. `bodies` of `of_bodies`, `tetrahedra`. `times` of the frames, where the scene has times.
 /// - `meshes`: `name`; `lower`, `size`, `points` of the surface's vertices; `triangles`, three vertices each
 ///   in 16 bits, or in 32 where `wide`; `chunks`, a byte per triangle, the number of its chunk modulo 256.
 /// - `body_meshes`, `body_kinds`: each body's mesh (32 bits), and a byte: 1 fixed, 2 deformable.
