@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 # test: cost=1
-"""The tables of docs/developer/rooms.md allow every include and every namespace of
+"""The lists of docs/developer/rooms.md allow every include and every namespace of
 the tree."""
 
 import pathlib
@@ -19,17 +19,17 @@ ENDINGS = {".h", ".hpp", ".cpp", ".c", ".cl", ".clh", ".cu"}
 LEAST = 500  # minimum number of includes in a whole tree: fewer mean that the search has missed files
 
 
-def words(cell):
-    """Texts in backquotes in a cell of a table."""
-    return re.findall(r"`([^`]+)`", cell)
+def words(text):
+    """Texts in backquotes."""
+    return re.findall(r"`([^`]+)`", text)
 
 
-def tables(text):
-    """Rows of the tables of a page, as lists of cells, by the first heads of their columns."""
+def lists(text):
+    """The entries of a page's lists, as pairs of the texts before and behind their colons, by heading."""
     found = {}
-    for block in re.findall(r"(?m)(?:^\|.*\n)+", text):
-        rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in block.splitlines()]
-        found[tuple(rows[0])[:2]] = rows[2:]
+    for section in re.split(r"(?m)^## ", text)[1:]:
+        head, _, body = section.partition("\n")
+        found[head] = [line.partition(":")[::2] for line in re.findall(r"(?m)^- (.*)", body)]
     return found
 
 
@@ -41,28 +41,29 @@ class Rules:
         listed = re.search(r"TANDEM_ALGORITHMS\(ALGORITHM\)((?: \\\n *ALGORITHM\(\w+\))+)", algorithms)
         walks = re.findall(r"ALGORITHM\((\w+)\)", listed[1])
         text = text.replace("`WALK`", "/".join(f"`{walk}`" for walk in walks))
-        of_page = tables(text.replace("`WALK/`", " ".join(f"`{walk}/`" for walk in walks)))
-        self.rooms = {words(row[0])[0]: set(words(row[1])) for row in of_page["Room", "May include"]}
+        of_page = lists(text.replace("`WALK/`", " ".join(f"`{walk}/`" for walk in walks)))
+        included = of_page["What a room may include"]
+        self.rooms = {room: set(words(others)) for own, others in included for room in words(own)}
         self.limits = {
-            (words(row[0])[0], words(row[1])[0]): (words(row[2]), words(row[3]))
-            for row in of_page["From", "To"]
+            tuple(words(own)): (others.split()[0], words(others))
+            for own, others in of_page["Narrower limits"]
         }
-        self.elsewhere = {words(row[0])[0] for row in of_page["Header", "Found in"]}
+        self.elsewhere = {words(name)[0] for name, _ in of_page["Headers found elsewhere"]}
         # Number of the step of each folder or file of a room.
         self.steps = {
-            words(row[0])[0]: {
+            words(room)[0]: {
                 name.strip("`"): number
-                for number, step in enumerate(row[1].split())
+                for number, step in enumerate(steps.split())
                 for name in step.split("/")
             }
-            for row in of_page["Room with steps", "Steps"]
+            for room, steps in of_page["Order inside a room"]
         }
         self.namespaces = {
-            (name, words(row[1])[0]) for row in of_page["Namespace", "In"] for name in words(row[0])
+            (name, words(place)[0]) for place, names in of_page["Namespaces"] for name in words(names)
         }
 
     def room_of(self, path):
-        """The longest room that contains the path; otherwise the folder, which has no row."""
+        """The longest room that contains the path; otherwise the folder, which has no entry."""
         names = [name for name in self.rooms if path.startswith(name + "/")]
         return max(names, key=len) if names else path.rpartition("/")[0] or "."
 
@@ -76,10 +77,10 @@ class Rules:
             return self.error_in_room(own, path, target)
         if other not in self.rooms[own]:
             return f"room {own} must not include room {other}"
-        only, never = self.limits.get((own, other), ((), ()))
+        rule, entries = self.limits.get((own, other), ("never", ()))
         inner = target[len(other) + 1 :]
         names = lambda entry: inner.startswith(entry) if entry.endswith("/") else inner == entry
-        if any(map(names, never)) or only and not any(map(names, only)):
+        if any(map(names, entries)) == (rule == "never"):
             return f"room {own} must not include {inner} of room {other}"
         return ""
 
@@ -171,9 +172,10 @@ class Rooms(unittest.TestCase):
         for room, allowed in rules.rooms.items():
             self.assertTrue((SOURCE / room).is_dir(), room)
             self.assertLessEqual(allowed, set(rules.rooms), room)
-        for (own, other), (only, never) in rules.limits.items():
+        for (own, other), (rule, entries) in rules.limits.items():
             self.assertIn(other, rules.rooms[own])
-            for entry in (*only, *never):
+            self.assertIn(rule, ("only", "never"))
+            for entry in entries:
                 self.assertTrue((SOURCE / other / entry).exists(), f"{other}/{entry}")
         self.assertEqual(set(rules.steps), {"algorithms", "harness"})
         for room, steps in rules.steps.items():
@@ -259,7 +261,7 @@ class Mistakes(unittest.TestCase):
             ["geometry/new.h:1: namespace exporting is no folder or file of the path"],
         )
 
-    def test_a_room_without_a_row_fails(self):
+    def test_a_room_without_an_entry_fails(self):
         self.assertEqual(
             self.errors('#include "base/error.h"\n', "extra/new.cpp"),
             [f"extra/new.cpp:1: folder extra is no room of {PAGE}"],

@@ -245,12 +245,12 @@ def verdicts(path):
 
 
 def kernel_table(found):
-    """The kernels that take at least 5 % of the time of their frame's kernels."""
+    """The kernels that take at least 15 % of the time of their frame's kernels."""
     rows = []
     for record in found:
-        name = " ".join(filter(None, (record["algorithm"], record["preset"])))
+        name = METHODS[method_of(record)]
         for kernel in record["kernels"]:
-            if kernel["share"] < 0.05:
+            if kernel["share"] < 0.15:
                 continue
             counters = kernel["counters"]
             rows.append(
@@ -262,13 +262,11 @@ def kernel_table(found):
                     text(kernel["over_floor"]),
                     f"{counters['sm_percent']:.0f} %",
                     f"{counters['occupancy_percent']:.0f} %",
-                    str(kernel["registers"]),
-                    f"{kernel['local_bytes'] / 1024:.1f}",
                     counters["top_stall"].replace("_", " "),
                 ]
             )
-    heads = "scene: walk|kernel|us per frame|of the kernels|times its floor|issue slots|occupancy"
-    return markdown.table([*heads.split("|"), "registers", "KiB a group", "main stall"], rows).rstrip("\n")
+    heads = "scene: method|kernel|us per frame|of the kernels|times its floor|issue slots|occupancy"
+    return markdown.table([*heads.split("|"), "main stall"], rows).rstrip("\n")
 
 
 def claimed():

@@ -23,9 +23,8 @@ def _iterations(found, name):
     return sorted(((numbers(one), one) for one in own), key=lambda pair: pair[0])
 
 
-def _ghosts(each, one):
-    mean, most = one["ghosts_mean"], one["ghosts_most"]
-    return [f"{mean:,.0f}", f"{most:,.0f}", f"{mean / each ** (2 / 3):.1f}"]
+def _ghosts(one):
+    return [f"{one['ghosts_mean']:,.0f}", f"{one['ghosts_most']:,.0f}"]
 
 
 def tables(found):
@@ -34,12 +33,12 @@ def tables(found):
     for (parts, each, *_), one in _iterations(found, "partition"):
         us, most = one["real_time"] * 1e3 / parts / each, one["own_most"] / each
         own = [f"{parts:,}", f"{each:,}", f"{one['real_time'] / 1e3:.2f}", f"{us:.1f}", f"{most:.2f}"]
-        rows["partitioner"].append([*own, *_ghosts(each, one)])
+        rows["partitioner"].append([*own, *_ghosts(one)])
     for (ranks, each, *_), one in _iterations(found, "ghosts"):
         kilobytes = [f"{one['setup_bytes_most'] / 1e3:,.0f}", f"{one['frame_bytes_most'] / 1e3:,.1f}"]
-        own = [f"{ranks:,}", f"{each:,}", *_ghosts(each, one), f"{one['neighbours_mean']:.1f}"]
+        own = [f"{ranks:,}", f"{each:,}", *_ghosts(one), f"{one['neighbours_mean']:.1f}"]
         rows["ghosts"].append([*own, *kilobytes])
-    ghosts = ["ghost bodies, mean", "most", "mean, of own^(2/3)"]
+    ghosts = ["ghost bodies, mean", "most"]
     heads = {
         "partitioner": [
             "parts",

@@ -188,7 +188,7 @@ class Recordings(Case):
         self.assertEqual(struct.unpack("<I", glb.read_bytes()[8:12])[0], glb.stat().st_size)
 
     def test_export_of_geometry(self):
-        """The content of the recording in the format of scenes/export/README.md."""
+        """The content of the recording in the format of scenes/export/geometry.h."""
         file, out = self.file("drawn.frames", self.whole), self.work / "drawn.json"
         text = self.output("export", file, "--frames", "2:8", "--every", 3, "--geometry", out, "--contacts")
         made = json.loads(out.read_text())

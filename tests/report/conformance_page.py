@@ -66,9 +66,8 @@ class ConformancePage(Case):
     def test_right(self):
         code, text, errors, page = self.conformance(PROGRAM)
         self.assertEqual((code, errors), (0, ""), text)
-        self.assertIn("Presets: tiled (resident).", page)
         self.assertNotIn("## host", page)
-        self.assertRegex(page, r"\| host [^|]* \| float, double: k = 8 \| 2 \| 2 \|")
+        self.assertRegex(page, r"Right cells \(float, double: k = 8\):\n\n- host .*: 2 of 2\n")
 
     def test_settings_in_words(self):
         script = loaded("conformance")
@@ -78,11 +77,19 @@ class ConformancePage(Case):
         self.assertEqual(script.settings_of(some), "float: k = 8, 18; groups of 64: k = 18")
         self.assertEqual(script.settings_of([]), "none")
 
+    def test_other_contacts_with_the_right_pairs(self):
+        agreement = {"missing": 0, "extra": 0, "contact_frames_wrong": 2, "digest": {"count": 3}}
+        outcome = lambda **more: loaded("conformance").outcome(
+            {"status": "wrong", "agreement": {**agreement, **more}}
+        )
+        self.assertEqual(outcome(), "other contacts")
+        self.assertEqual(outcome(extra=4), "4 extra")
+
     def test_wrong(self):
         code, text, errors, page = self.conformance(self.other())
         self.assertEqual((code, errors), (1, ""), text)
         self.assertIn("| tiled | resident | 7 missing | 7 missing |", page)
-        self.assertRegex(page, r"\| host [^|]* \| float, double: k = 8 \| 2 \| 0 \|")
+        self.assertRegex(page, r"Right cells \(float, double: k = 8\):\n\n- host .*: 0 of 2\n")
 
     def test_failing(self):
         code, text, _, page = self.conformance(self.other(end=True))
@@ -94,7 +101,7 @@ class ConformancePage(Case):
         code, text, errors, page = self.conformance(self.other(crash=True), "--algorithm", "tiled,leaf_query")
         self.assertEqual((code, errors), (1, ""), text)
         self.assertIn("- float, double: k = 8: leaf_query: the driver ended the process (SIGSEGV)", page)
-        self.assertRegex(page, r"\| host [^|]* \| float, double: k = 8 \| 2 \| 2 \|")
+        self.assertRegex(page, r"Right cells \(float, double: k = 8\):\n\n- host .*: 2 of 2\n")
 
     def test_an_empty_answer_shows_nothing(self):
         code, text, errors, page = self.conformance(self.other(empty=True))
@@ -123,7 +130,7 @@ class ConformancePage(Case):
         code, _, _, page = others()
         self.assertEqual(code, 0)
         self.assertIn("2 cells were right on two devices or more; their digests are equal in 2.", page)
-        self.assertIn("| other device | float, double: k = 8 | 2 | 2 |", page)
+        self.assertIn("\n- other device: 2 of 2\n", page)
         code, text, _, page = others(digests={"tiled resident": "{}"})
         self.assertEqual(code, 1)
         self.assertIn("tiled resident, k = 8, float: 2 different digests", text)

@@ -53,7 +53,7 @@ class ExportEnded(SystemExit):
 
 @dataclasses.dataclass
 class ShownScene:
-    """json: the output of 'tandem export --geometry' (scenes/export/README.md). name, key: those of the
+    """json: the output of 'tandem export --geometry' (scenes/export/geometry.h). name, key: those of the
     scene. frames: number of frames."""
 
     json: str

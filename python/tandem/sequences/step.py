@@ -1,5 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""Steps, and the lists of them in JSON (README.md)."""
+"""Steps, and the lists of them in JSON: {"steps": [...]}, each of them with
+- name, unique, and says, a description; group (optional): the name of several entries together;
+- commands: texts that are split into words as by a shell, without its variables and operators. The word
+  `tandem` is the program, and {NAME} a name that the caller gives;
+- or plan, which becomes plans/NAME.json. Its default command is `tandem run` with it;
+- each (optional): values by name, such as {"k": ["8", "18"]}. Every combination of them is put into the commands
+  in place of {k}, and its results are a part of their own: NAME-1, NAME-2, ...;
+- seconds (optional): the expected duration of all parts; limit (optional): the most seconds of one part;
+- needs (optional): a list of `device cuda:0`, `double cuda:0`, `driver PoCL` ({PoCL} is then its device),
+  `algorithm cubql cuda:0`, `program mpirun`, `module torch`, `file PATTERN`. With optional, what is missing is no
+  failure."""
 
 import dataclasses
 import itertools
