@@ -294,6 +294,24 @@ class Scripts(ScriptCase):
         self.assertIn("only those to the fastest chunked cell are shown", text)
         path.unlink()
 
+    def moving_picture(self, glb, out):
+        """A loop has a picture for each exported frame, and a red disc where a mark is."""
+        from PIL import Image
+
+        marks = self.work / "marks.csv"
+        marks.write_text("picture,x,y,z,radius\n1,0,0,0,5\n")
+        words = glb, out, "--loop", 50, "--size", "64x48", "--from=0,0,1", "--box=-4,-3,-3,4,3,3"
+        self.assertEqual(self.output_of("render", *words, "--marks", marks), f"{out}.webp\n")
+        image = Image.open(f"{out}.webp")
+        self.assertEqual(image.n_frames, 3)
+        for number in range(3):
+            image.seek(number)
+            red, green, blue = image.convert("RGB").getpixel((32, 24))
+            self.assertEqual(red > 150 and green < 90 and blue < 90, number == 1, (number, red, green, blue))
+        marks.write_text("picture,x,y\n1,0,0\n")
+        self.refused("render", "no table of picture,x,y,z,radius", *words, "--marks", marks)
+        self.refused("render", "milliseconds from 1 to 10000", glb, out, "--loop", 0)
+
     def test_pictures(self):
         try:
             subprocess.run(["/usr/bin/python3", "-c", "import numpy, PIL"], check=True, capture_output=True)
@@ -305,6 +323,7 @@ class Scripts(ScriptCase):
             self.output_of("render", glb, out, "--at", "0,1", "--size", "64x48"),
             f"{out}-0.png\n{out}-1.png\n",
         )
+        self.moving_picture(glb, out)
         data, bad = glb.read_bytes(), self.work / "bad.glb"
         lengths = (
             (0, "empty"),
