@@ -91,12 +91,19 @@ class CommandLine(Case):
             ("scenes", ["plates", "pile", "density", "glasses", "1729", "14793", "16140"]),
             ("algorithms", ["chunked", "gproximity", "tiled", "embree", "unc2010", "seed_threshold"]),
         ):
-            out = self.output(name)
+            text = self.output(name)
             for word in words:
-                self.assertIn(word, out)
+                self.assertIn(word, text)
             out = self.output(name, "--json")
             entries = json.loads(out)
             self.assertGreater(len(entries), 1)
+            if name == "devices":
+                devices = [device for entry in entries for device in entry["devices"]]
+                (chosen,) = (device for device in devices if device["default"])
+                gpus = [device for device in devices if device["kind"] == "gpu"]
+                gpus.sort(key=lambda device: not device["id"].startswith("cuda"))
+                self.assertEqual(chosen["id"], gpus[0]["id"] if gpus else "host")
+                self.assertRegex(text, rf"(?m)^{chosen['id']} .*; the default device$")
             for entry in entries:
                 self.assertLessEqual(keys[name], set(entry))
             self.assertTrue(all(word in out for word in words))

@@ -54,8 +54,8 @@ void add_cell_options(CLI::App& app, RunOptions& options) {
     app.add_option(
            "--device", options.request.devices,
            fmt::format(
-               "D,E or all, D+E for one cell on both (see 'tandem devices'; default: {}, for check all)",
-               default_device))
+               "D,E or all, D+E for one cell on both (see 'tandem devices'; default: {}; for check all)",
+               default_device_help))
         ->delimiter(',');
     app.add_option("--frames", options.frames, "FIRST:LAST, both inclusive, or one number (default: all)");
     app.add_option_function<std::size_t>(

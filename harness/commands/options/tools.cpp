@@ -52,7 +52,7 @@ Action add_simulate(CLI::App& app) {
     app.add_option("--preset", options.request.presets,
                    "a preset of the algorithm (see 'tandem algorithms'; default: its first)");
     app.add_option("--device", options.request.devices,
-                   fmt::format("the device that finds contacts (default: {})", default_device));
+                   fmt::format("the device that finds contacts (default: {})", default_device_help));
     add_set_option(app, options.request,
                    "NAME=VALUE: a setting of the algorithm (default: contact_rule=sat, decision=recheck)");
     app.add_option("--require", options.require, "devices or backends whose absence is an error")
@@ -114,7 +114,9 @@ Action add_export(CLI::App& app) {
     app.add_flag("--surfaces", options.surfaces,
                  "also write the contact surfaces of every frame, coloured by pressure; bodies need pressure "
                  "fields (--pressure)");
-    app.add_option("--device", options.device, "the device that finds contacts and surfaces (default: host)");
+    app.add_option(
+        "--device", options.device,
+        fmt::format("the device that finds contacts and surfaces (default: {})", default_device_help));
     const auto* csv =
         app.add_option("--csv", options.csv,
                        "write records as a CSV table to this file, or to standard output without a file; "
