@@ -126,7 +126,7 @@ def draw(path):
 
 
 def parsed(arguments):
-    parser = Parser("tandem paper", __doc__)
+    parser = Parser("tandem paper", __doc__, "tandem paper -o paper")
     add = parser.add_argument
     folder = "the folder for tables, figures, records and index.html"
     add("-o", "--output", required=True, metavar="FOLDER", help=folder)
