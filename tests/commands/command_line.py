@@ -62,6 +62,7 @@ CONTRADICTIONS = """
 --dry-run cannot be combined with --dump-contacts   | {run} --dry-run --dump-contacts x
 --dry-run cannot be combined with --dump-distances  | {run} --dry-run --dump-distances x
 --dry-run cannot be combined with --dump-surfaces   | {run} --dry-run --dump-surfaces x
+--keys requires --dry-run                           | {run} --keys
 --pose requires --mesh                              | {run} --pose '{pose}'
 --pose requires --mesh                              | check --pose '{pose}'
 --pose requires --mesh                              | accuracy --pose '{pose}'

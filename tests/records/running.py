@@ -43,7 +43,7 @@ class Running(Case):
                 "--device",
                 record["devices"][0]["id"],
                 *sets,
-                "--dry-run",
+                "--dry-run --keys",
             )
             (key,) = re.findall(rf"(?m)^ +({record['algorithm']}\|.*)$", out)
             listed, recorded = key.split("|"), record["key"].split("|")
@@ -65,7 +65,7 @@ class Running(Case):
             ("18", "18"),
         ):
             out = self.output(
-                f"run plates:count=2 --frames 0 --device host --algorithm tiled --set k={text} --dry-run"
+                f"run plates:count=2 --frames 0 --device host --algorithm tiled --set k={text} --dry-run --keys"
             )
             self.assertEqual(re.findall(r",k=(\d+),", out), values.split())
         for text, message in (
@@ -85,11 +85,12 @@ class Running(Case):
     def test_dry_run_lists_and_writes_nothing(self):
         out = self.work / "dry.jsonl"
         status, text, errors = tandem(
-            "run", *CELLS, "--set", "k=6,8,6", "--seconds", 7, "--dry-run", "--out", out
+            "run", *CELLS, "--set", "k=6,8,6", "--seconds", 7, "--dry-run", "--keys", "--out", out
         )
         self.assertEqual((status, len(errors)), (0, 1), errors)
         self.assertIn("4 cells are named more than once", errors[0])
-        self.assertIn("8 cells, about 56 s of rounds", text)
+        self.assertIn("8 cells, about 56 s of rounds;", text)
+        self.assertEqual(len(re.findall(r"(?m)^ +\d+ +7 s  (?:chunked|tiled) \w+ .*on host$", text)), 8)
         self.assertEqual(len(re.findall(r"(?m)^ +(?:chunked|tiled)\|host:", text)), 8)
         self.assertFalse(out.exists())
 
@@ -134,6 +135,9 @@ class Running(Case):
         out.write_text(
             "".join(lines[:3]) + "".join(json.dumps(record) + "\n" for record in (other, failed, short))
         )
+        text = self.output(*arguments, "--resume", "--dry-run", "--repeat", 2)
+        self.assertEqual(sorted(re.findall(r"(?m)^ +\d +(\d+ s|\?)  \w", text), key=len), ["?"] * 4 + ["0 s"])
+        self.assertIn("5 cells, about 0 s of rounds and 4 cells of unknown duration; 3 more", text)
         text = self.output(*arguments, "--resume", "--dry-run")
         self.assertIn("5 cells, about ", text)
         self.assertIn("; 3 more are already in ", text)

@@ -185,8 +185,8 @@ Action add_run(CLI::App& app) {
     add_sampling(app, options);
     add_choosing(app, options);
     app.option_defaults()->group(option_groups::output);
-    app.add_flag("--dry-run", options.dry_run,
-                 "list the cells with their keys and the estimated time; measure none");
+    app.add_flag("--dry-run", options.dry_run, "list the cells with their estimated seconds; measure none");
+    app.add_flag("--keys", options.keys, "--dry-run: also list the keys of their records");
     app.add_flag("--resume", options.resume,
                  "skip the cells that --out already has from a program of the same sources")
         ->needs("--out");
