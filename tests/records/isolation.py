@@ -90,7 +90,7 @@ class Isolation(Case):
 
     def test_a_hang_affects_its_cell_only(self):
         out = self.work / "hang.jsonl"
-        process = self.start(*CELLS, "--repeat", 2, "--isolate", "--timeout", 10, "--out", out)
+        process = self.start(*CELLS, "--repeat 2 --isolate --timeout 10 --quiet --out", out)
         victim = wait_for(lambda: children(process.pid))[0]
         os.kill(victim, signal.SIGSTOP)
         status, text, errors = self.end(process)
