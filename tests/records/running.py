@@ -186,11 +186,16 @@ class Running(Case):
                 self.assertGreater(record["sampling"]["rounds"], 1)
 
     def test_doubts_about_a_time_are_reported(self):
-        status, text, _ = tandem(
-            f"run {self.twice} --device host --algorithm tiled --truth none --noise 0.0001% --seconds 0.01"
-        )
-        self.assertEqual(status, 0)
-        self.assertIn("interval wider than asked for", text)
+        """One line for all cells."""
+        words = f"run {self.twice} --device host --truth none --noise 0.0001% --seconds 0.01 --algorithm"
+        for algorithms, doubt in (
+            ("tiled", "the interval is wider than asked for"),
+            ("tiled,chunked", "2 of 2 intervals are wider than asked for"),
+        ):
+            status, text, _ = tandem(words, algorithms)
+            self.assertEqual(status, 0)
+            self.assertRegex(text, rf"(?m)^{doubt}(?:;|$)")
+            self.assertEqual(len(re.findall("asked for", text)), 1, text)
 
     def test_tables_fit_a_hundred_columns(self):
         status, text, _ = tandem(
