@@ -158,7 +158,7 @@ class Running(Case):
             out = self.work / f"interrupted{number}.jsonl"
             words = [
                 f"run {self.twice} --device host --algorithm chunked,tiled "
-                f"--truth none --no-count --noise 0.0001% --seconds 100000 --out {out}"
+                f"--truth none --no-count --noise 0.0001% --seconds 100000 --quiet --out {out}"
             ]
             process = subprocess.Popen(
                 [str(PROGRAM), *words_of(words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
