@@ -31,8 +31,11 @@ std::string progress_text(double elapsed, std::optional<double> left) {
     return fmt::format("[{} %, {}, {} left]", percent, clock_text(elapsed), clock_text(*left));
 }
 
-Progress::Progress(bool quiet)
-    : on_(!quiet && isatty(STDERR_FILENO) != 0), begin_(std::chrono::steady_clock::now()) {}
+Progress::Progress(bool quiet, double period)
+    : on_(!quiet),
+      in_place_(isatty(STDERR_FILENO) != 0),
+      period_(period),
+      begin_(std::chrono::steady_clock::now()) {}
 
 double Progress::elapsed() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
@@ -46,13 +49,20 @@ std::optional<double> Progress::left(double fraction) const {
 /// A line that is longer than the terminal could not be overwritten.
 void Progress::show(std::string_view text, std::optional<double> left) const {
     if (!on_) return;
+    if (!in_place_) {
+        const auto now = elapsed();
+        if (now - shown_ < period_) return;
+        shown_ = now;
+        print_message("{} {}\n", progress_text(now, left), text);
+        return;
+    }
     const auto columns = terminal_columns(STDERR_FILENO);
     const auto line = fmt::format("{} {}", progress_text(elapsed(), left), text);
     print_message("\r\033[K{}", shortened(line, (columns > 0 ? columns : usual_columns) - 1));
 }
 
 void Progress::clear() const {
-    if (on_) print_message("\r\033[K");
+    if (on_ && in_place_) print_message("\r\033[K");
 }
 
 } // namespace tandem

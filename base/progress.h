@@ -7,12 +7,12 @@
 
 namespace tandem {
 
-/// One line on standard error that is overwritten in place: "[42 %, 1:05, 1:30 left] text". The percentage is
-/// that of the time. Prints nothing when standard error is no terminal.
+/// Lines on standard error: "[42 %, 1:05, 1:30 left] text". The percentage is that of the time. In a terminal
+/// it is one line that is overwritten in place; elsewhere, such as in a log, a line every `period` seconds.
 class Progress {
 public:
-    /// The elapsed time counts from here.
-    explicit Progress(bool quiet);
+    /// The elapsed time counts from here. `quiet`: prints nothing.
+    explicit Progress(bool quiet, double period = 10);
     ~Progress() { clear(); }
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
@@ -26,7 +26,9 @@ public:
 private:
     double elapsed() const;
 
-    bool on_;
+    bool on_, in_place_;
+    double period_;
+    mutable double shown_ = 0; ///< the elapsed seconds at the last line of a log
     std::chrono::steady_clock::time_point begin_;
 };
 

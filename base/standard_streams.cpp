@@ -60,8 +60,8 @@ std::size_t terminal_columns(int descriptor) {
     return ioctl(descriptor, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
 }
 
-std::size_t output_columns() {
-    constexpr std::size_t least = 40, most = 1000, usual = 100;
+std::size_t output_columns(std::size_t usual) {
+    constexpr std::size_t least = 40, most = 1000;
     auto columns = terminal_columns(STDOUT_FILENO);
     if (const std::string_view given = std::getenv("COLUMNS") != nullptr ? std::getenv("COLUMNS") : "";
         columns == 0)

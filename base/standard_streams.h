@@ -50,9 +50,9 @@ void put(fmt::format_string<Values...> format, Values&&... values) {
 /// Whether standard output is a terminal and NO_COLOR is not set (no-color.org).
 bool prints_colour();
 
-/// The width of lines on standard output, in characters: that of its terminal, else $COLUMNS, else 100. At
-/// least 40.
-std::size_t output_columns();
+/// The width of lines on standard output, in characters: that of its terminal, else $COLUMNS, else `usual`.
+/// At least 40.
+std::size_t output_columns(std::size_t usual = 100);
 
 /// The width of the terminal of a descriptor; 0 when it is no terminal, or has no size.
 std::size_t terminal_columns(int descriptor);

@@ -12,7 +12,7 @@ from tests.program import PROGRAM, SOURCE
 
 HELP = """#!/bin/sh
 case "$*" in
---help) printf 'Options:\\n  -h,--help  x\\n  --version  x\\n\\nSubcommands:\\n  run  measure\\n  check  compare\\n' ;;
+--help) printf 'Cells:\\n  run  measure\\n  check  compare\\n\\nOptions:\\n  -h, --help  x\\n  --version  x\\n\\n    tandem run\\n' ;;
 "run --help") printf '  -o,--out FILE Excludes: --json\\n  --set NAME\\n' ;;
 "check --help" | "hidden --help") printf '  -o,--out FILE\\n' ;;
 *) exit 2 ;;

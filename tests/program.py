@@ -72,18 +72,25 @@ def right_cells(text):
 
 
 def briefly(arguments):
-    """The words of a command line; in short form a run is on the host unless they choose a device, because PoCL
-    compiles slowly."""
+    """The words of a command line. Unless they choose a device, a run is on OpenCL's first one; in short form it
+    is on the host, because PoCL compiles slowly."""
     words = words_of(arguments)
-    if LONG or words[0] != "run" or "--device" in words or any(word.endswith("plan.json") for word in words):
+    if words[0] != "run" or "--device" in words or any(word.endswith("plan.json") for word in words):
         return words
-    return [*words, "--device", "host"]
+    return [*words, "--device", "opencl:0" if LONG else "host"]
+
+
+def messages(text):
+    """The lines of standard error, without those of PoCL's compiler and of progress; a slow machine has more of
+    these."""
+    others = r".*generated\.\s*$|\s*$|\[(\d+ %, )?[\d:]+(, [\d:]+ left)?\] "
+    return [line for line in text.splitlines() if not re.match(others, line)]
 
 
 def tandem(*arguments, environment=None, address_space=None):
-    """Returns (exit code, standard output, lines of standard error without PoCL's own). `address_space`
-    limits the bytes of address space. A run takes one sample per cell unless the arguments choose otherwise:
-    the default of ten rounds is for measurements."""
+    """Returns (exit code, standard output, messages of standard error). `address_space` limits the bytes of
+    address space. A run takes one sample per cell unless the arguments choose otherwise: the default of ten
+    rounds is for measurements."""
     arguments = words_of(arguments)
     # a plan has its own stopping criterion
     is_plan = any(argument.endswith("plan.json") for argument in arguments)
@@ -105,10 +112,7 @@ def tandem(*arguments, environment=None, address_space=None):
         env={**os.environ, **(environment or {})},
         preexec_fn=limit,
     )
-    lines = [
-        line for line in done.stderr.splitlines() if line.strip() and not line.rstrip().endswith("generated.")
-    ]
-    return done.returncode, done.stdout, lines
+    return done.returncode, done.stdout, messages(done.stderr)
 
 
 def tried(what, count, unit, where="host", *, lost=0, crashes=0, hangs=0, rest=0):

@@ -192,8 +192,7 @@ int accuracy_command(const AccuracyOptions& options) {
     auto request = options.run.request;
     if (request.devices.empty()) request.devices.emplace_back(default_device);
     if (request.algorithms.empty()) request.algorithms.emplace_back(algorithms().front()->name());
-    const auto backends = open_backends(request.devices, options.run.require);
-    check_required(backends, options.run.require);
+    const auto backends = open_named(request.devices, options.run.require);
     const auto devices = open_devices(options.run, backends, request.devices);
     auto cells = request.sets.empty() ? sweep(request, devices) : plan(request, devices);
     keep_matching(cells, options.run.filter);

@@ -2,6 +2,7 @@
 // tandem algorithms: lists all algorithms in short, or explains the named ones at length.
 #include "algorithms/traversal.h"
 #include "harness/commands/listings.h"
+#include "harness/commands/setting_texts.h"
 #include "base/standard_streams.h"
 #include "base/text_lines.h"
 
@@ -16,33 +17,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::vector<std::string> words_of(const Parameter& parameter) {
-    std::vector<std::string> words;
-    for (const auto& word : parameter.choices()) words.emplace_back(word.text);
-    return words;
-}
-
-/// The values that auto tries.
-std::vector<std::string> alternatives_of(const Parameter& parameter) {
-    std::vector<std::string> texts;
-    for (const auto value : parameter.alternatives()) texts.push_back(parameter.text(value));
-    return texts;
-}
-
-/// "1..1024", the list of choices, or both.
-std::string values_of(const Parameter& parameter) {
-    auto values = words_of(parameter);
-    if (parameter.is_length()) return fmt::format("0..{}", parameter.longest);
-    if (parameter.takes_integers())
-        values.insert(values.begin(), fmt::format("{}..{}", parameter.least, parameter.most));
-    return fmt::format("{}", fmt::join(values, ", "));
-}
-
-/// The resolved values of all settings in a preset.
-Settings settings_of(const Traversal& traversal, const Preset& preset) {
-    return resolve(traversal.parameters(), preset.values, {}, traversal.name());
-}
-
 /// "NAME=VALUE" of the settings that a preset changes.
 std::vector<std::string> changed_by(const Traversal& traversal, const Preset& preset) {
     const auto settings = settings_of(traversal, preset);
@@ -51,29 +25,6 @@ std::vector<std::string> changed_by(const Traversal& traversal, const Preset& pr
         if (const auto value = settings.text(p->name); value != p->text(p->initial))
             changed.push_back(fmt::format("{}={}", p->name, value));
     return changed;
-}
-
-/// "device in resident; sphere in published": the values of a setting by preset. The initial value is added
-/// when no preset has it. Empty when no preset changes the setting.
-std::string by_preset(const Traversal& traversal, const Parameter& parameter) {
-    std::vector<std::pair<std::string, std::vector<std::string_view>>> values;
-    for (const auto& preset : traversal.presets()) {
-        const auto value = settings_of(traversal, preset).text(parameter.name);
-        const auto found = std::ranges::find(values, value, [](const auto& entry) { return entry.first; });
-        if (found == values.end())
-            values.push_back({value, {preset.name}});
-        else
-            found->second.push_back(preset.name);
-    }
-    const auto own = parameter.text(parameter.initial);
-    if (values.size() == 1 && values.front().first == own) return {};
-    std::vector<std::string> texts;
-    texts.reserve(values.size() + 1);
-    for (const auto& [value, presets] : values)
-        texts.push_back(fmt::format("{} in {}", value, fmt::join(presets, ", ")));
-    if (std::ranges::find(values, own, [](const auto& entry) { return entry.first; }) == values.end())
-        texts.push_back(own + " where no preset sets it");
-    return fmt::to_string(fmt::join(texts, "; "));
 }
 
 /// A numeric parameter has a range; a parameter of words has choices; some have both.
@@ -157,7 +108,7 @@ void explain_setting(const Traversal& traversal, const Parameter& parameter, con
     };
     put("    {} = {}\n", parameter.name, value);
     put_lines(fmt::format("{:{}}{}", "", indent, parameter.help), indent);
-    line(parameter.takes_integers() || parameter.is_length() ? "range" : "choices", values_of(parameter));
+    line(kind_of_values(parameter), values_of(parameter));
     if (const auto values = by_preset(traversal, parameter); !values.empty()) line("presets", values);
     if (!parameter.alternatives().empty())
         line("auto tries", fmt::format("{}", fmt::join(alternatives_of(parameter), ", ")));

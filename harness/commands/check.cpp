@@ -196,8 +196,7 @@ std::vector<Cell> filtered(std::vector<Cell> cells, const RunOptions& options) {
 int check_command(const RunOptions& options) {
     auto request = options.request;
     if (request.devices.empty()) request.devices.emplace_back("all");
-    const auto backends = open_backends(request.devices, options.require);
-    check_required(backends, options.require);
+    const auto backends = open_named(request.devices, options.require);
     const auto devices = open_devices(options, backends, request.devices);
     report_cache_folder();
     const auto scenes = expand_hard(options.scene);

@@ -62,9 +62,15 @@ std::string surfaces_file(std::size_t frame) { return fmt::format("surfaces_{:06
 /// Makes what frames have on the device beside bodies.
 struct Finders {
     Finders(const ExportOptions& options, const Scene& scene) {
-        const std::string device = options.device.empty() ? "host" : options.device;
-        if (options.contacts) contacts.emplace(device, scene);
-        if (options.surfaces) surfaces.emplace(device, scene, "pressure");
+        if (!options.contacts && !options.surfaces) return;
+        const std::vector<std::string> names{options.device.empty() ? default_device : options.device};
+        backends = open_named(names, {});
+        const auto devices = choose_devices(backends, names);
+        if (devices.size() != 1)
+            throw InputError(
+                fmt::format("--device {}: contacts need one device; name exactly one", options.device));
+        if (options.contacts) contacts.emplace(devices, scene);
+        if (options.surfaces) surfaces.emplace(devices, scene, "pressure");
     }
 
     FindSurfaces find_surfaces() {
@@ -72,6 +78,7 @@ struct Finders {
         return [this](std::size_t number, const Frame& frame) { return surfaces->surfaces(number, frame); };
     }
 
+    std::vector<BackendReport> backends; ///< own the device of the others
     std::optional<FrameContacts> contacts, surfaces;
 };
 

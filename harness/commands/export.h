@@ -25,7 +25,7 @@ struct ExportOptions {
     std::string k = "8";                    ///< as the setting
     bool contacts = false;                  ///< also export the contacts, found on `device`
     bool surfaces = false;                  ///< also export the contact surfaces, found on `device`
-    std::string device;                     ///< empty: host
+    std::string device;                     ///< empty: default_device
 };
 
 /// Returns the exit code: 0 ok, 1 a check failed, 3 a device failed. Bad use throws InputError.

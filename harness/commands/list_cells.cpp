@@ -6,6 +6,8 @@
 #include "harness/plans/cell_session.h"
 #include "harness/plans/key.h"
 
+#include <fmt/format.h>
+
 namespace tandem {
 
 namespace {
@@ -16,16 +18,36 @@ struct Listed {
     double seconds = 0;                 ///< of the rounds of the others
 };
 
-/// Lists the cells of a task: their time is that of an earlier run where known, else --seconds.
+/// The seconds of a cell's rounds: those of an earlier run where known, else --seconds; none with --repeat.
+std::optional<double> seconds_of(const Cell& cell, const Task& task, const RunRecords& records) {
+    const auto known = records.seconds(cell, task);
+    return known || task.options.repeat ? known : task.options.seconds;
+}
+
+/// Lists the cells of a task with their times, and with --keys the keys of their records.
 void list(const Task& task, const RunRecords& records, Listed& all) {
     for (const auto& cell : task.cells) {
-        const auto known = records.seconds(cell, task);
-        if (!known && task.options.repeat) ++all.unknown;
-        all.seconds += known ? *known : (task.options.repeat ? 0 : task.options.seconds);
-        put("{:>5}  {}\n       {}\n", ++all.cells, describe(cell),
+        const auto seconds = seconds_of(cell, task, records);
+        all.seconds += seconds.value_or(0);
+        all.unknown += seconds ? 0 : 1;
+        put("{:>5}  {:>6}  {}\n", ++all.cells, seconds ? fmt::format("{:.0f} s", *seconds) : "?",
+            describe(cell));
+        if (!task.options.keys) continue;
+        put("{:15}{}\n", "",
             cell.candidates.empty() ? key_of(cell, session_settings(cell, task.scene), task.scene, task.range)
                                     : "its key is that of the choice");
     }
+}
+
+std::string count_text(std::size_t cells) { return fmt::format("{} cell{}", cells, cells == 1 ? "" : "s"); }
+
+/// "8 cells, about 56 s of rounds and 2 cells of unknown duration".
+std::string total_text(const Listed& all) {
+    if (all.unknown == all.cells)
+        return count_text(all.cells) + (all.cells > 0 ? " of unknown duration" : "");
+    return fmt::format("{}, about {:.0f} s of rounds{}", count_text(all.cells), all.seconds,
+                       all.unknown > 0 ? fmt::format(" and {} of unknown duration", count_text(all.unknown))
+                                       : "");
 }
 
 } // namespace
@@ -46,10 +68,7 @@ int list_cells(const RunGroups& all, const RunOptions& options, RankTeam* team) 
             ++unopened;
         }
     const auto left_out = records ? records->left_out() : 0;
-    put("{} cells, about {:.0f} s of rounds{}{}; checks against the reference and the truth take extra "
-        "time\n",
-        listed.cells, listed.seconds,
-        listed.unknown > 0 ? fmt::format(" and {} cells of unknown duration", listed.unknown) : "",
+    put("{}{}; checks against the reference and the truth take extra time\n", total_text(listed),
         left_out > 0 ? fmt::format("; {} more are already in {}", left_out, options.out) : "");
     return unopened > 0 ? 2 : 0;
 }

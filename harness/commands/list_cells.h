@@ -5,7 +5,7 @@
 
 namespace tandem {
 
-/// --dry-run: lists the cells with the keys of their records, and estimates their time. A scene that cannot
+/// --dry-run: lists the cells with their estimated times. A scene that cannot
 /// be opened yet, such as a missing recording, does not hide the other groups; the exit code is then 2.
 int list_cells(const RunGroups& all, const RunOptions& options, RankTeam* team);
 

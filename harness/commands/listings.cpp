@@ -41,9 +41,16 @@ std::string clock_of(Device& device) {
     return device.clock();
 }
 
-Json device_json(const DeviceInfo& info, const std::string& clock, const std::string& same,
-                 const GpuCondition& now) {
+/// What the listing says of a device beside its own properties.
+struct DeviceFacts {
+    bool is_default = false;
+    std::string clock, same_as;
+    GpuCondition now;
+};
+
+Json device_json(const DeviceInfo& info, const DeviceFacts& facts) {
     return {{"id", info.id},
+            {"default", facts.is_default},
             {"name", info.name},
             {"driver", info.driver},
             {"compiler", info.compiler},
@@ -52,18 +59,18 @@ Json device_json(const DeviceInfo& info, const std::string& clock, const std::st
             {"memory_bytes", info.global_bytes},
             {"local_bytes", info.local_bytes},
             {"double", info.has_double},
-            {"clock", clock},
+            {"clock", facts.clock},
             {"hardware", info.hardware.empty() ? Json(nullptr) : Json(info.hardware)},
-            {"same_as", same.empty() ? Json(nullptr) : Json(same)},
-            {"now", gpu_condition_json(now)}};
+            {"same_as", facts.same_as.empty() ? Json(nullptr) : Json(facts.same_as)},
+            {"now", gpu_condition_json(facts.now)}};
 }
 
-void print_device(const DeviceInfo& info, const std::string& clock, const std::string& same,
-                  const GpuCondition& now) {
-    put("{:<10} {} ({}), {} compute units, {:.1f} GB, {}; times by {}{}\n", info.id, info.name, info.driver,
-        info.compute_units, static_cast<double>(info.global_bytes) * 1e-9, info.compiler, clock,
-        same.empty() ? "" : fmt::format("; the same GPU as {}", same));
-    if (const auto text = gpu_condition_text(now); !text.empty()) put("           now: {}\n", text);
+void print_device(const DeviceInfo& info, const DeviceFacts& facts) {
+    put("{:<10} {} ({}), {} compute units, {:.1f} GB, {}; times by {}{}{}\n", info.id, info.name, info.driver,
+        info.compute_units, static_cast<double>(info.global_bytes) * 1e-9, info.compiler, facts.clock,
+        facts.same_as.empty() ? "" : fmt::format("; the same GPU as {}", facts.same_as),
+        facts.is_default ? "; the default device" : "");
+    if (const auto text = gpu_condition_text(facts.now); !text.empty()) put("           now: {}\n", text);
 }
 
 /// The registered drivers of a backend, as [{file, library, platforms: [{name, devices}], problem}].
@@ -98,8 +105,7 @@ void print_drivers(const std::vector<DriverReport>& drivers) {
 /// `tandem devices --measure`: the ceilings of the chosen devices.
 int measure_devices(const DevicesOptions& options) {
     const auto names = options.devices.empty() ? std::vector<std::string>{"all"} : options.devices;
-    const auto backends = open_backends(names, options.require);
-    check_required(backends, options.require);
+    const auto backends = open_named(names, options.require);
     const auto chosen = choose_devices(backends, names);
     RecordFile file(options.out);
     Json records = Json::array();
@@ -203,11 +209,10 @@ int devices_command(const DevicesOptions& options) {
         entry["devices"] = Json::array();
         for (const auto& device : backend.devices) {
             const auto& info = device->info();
-            const auto same = same_as(backends, info);
-            const auto now = GpuGauge(info).read();
-            const auto clock = clock_of(*device);
-            entry["devices"].push_back(device_json(info, clock, same, now));
-            if (!json) print_device(info, clock, same, now);
+            const DeviceFacts facts{device.get() == default_of(backends), clock_of(*device),
+                                    same_as(backends, info), GpuGauge(info).read()};
+            entry["devices"].push_back(device_json(info, facts));
+            if (!json) print_device(info, facts);
         }
         entry["drivers"] = drivers_json(backend.drivers);
         if (!json) print_drivers(backend.drivers);

@@ -27,4 +27,12 @@ int devices_command(const DevicesOptions& options);
 int scenes_command(bool json);
 int algorithms_command(const AlgorithmsOptions& options);
 
+/// The names of the settings of all algorithms, each once.
+std::vector<std::string> setting_names();
+/// Prints what a setting does, its values, and those in the presets of each algorithm. Throws InputError for
+/// an unknown name.
+void explain_setting(const std::string& name);
+/// Prints a line for each setting.
+void list_settings();
+
 } // namespace tandem

@@ -55,9 +55,7 @@ void print_notes(std::span<const CellResult* const> measured, const Scene& scene
             if (std::ranges::find(warnings, line) == warnings.end()) warnings.push_back(line);
     for (const auto& line : warnings) put("{}\n", line);
     if (const auto text = disturbed_text(measured); !text.empty()) put_paragraph(text);
-    for (const auto* result : measured)
-        if (const auto text = doubts(*result); !text.empty())
-            put_paragraph(fmt::format("{}: {}", describe(*result->cell), text));
+    if (const auto text = doubts(measured); !text.empty()) put_paragraph(text);
 }
 
 } // namespace

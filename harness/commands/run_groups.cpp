@@ -35,8 +35,7 @@ RunGroups::RunGroups(const RunOptions& options, RankTeam* team) : options_(optio
     together(team_, [&] {
         const auto plan = plan_of(options_);
         const auto names = devices_of(plan);
-        backends_ = open_backends(names, options_.require);
-        check_required(backends_, options_.require);
+        backends_ = open_named(names, options_.require);
         limit_memory(options_, backends_);
         const auto choose = [&](const auto& asked) {
             if (team_ == nullptr || !asks_for_each(asked[0])) return choose_devices(backends_, asked);

@@ -10,6 +10,7 @@
 #include "harness/sampling/local_sampler.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <map>
@@ -131,14 +132,25 @@ std::string disturbed_text(std::span<const CellResult* const> results) {
     return fmt::format("{} of {} rounds were disturbed ({})", disturbed, all, most->first);
 }
 
-std::string doubts(const CellResult& result) {
-    const auto& m = result.measurement;
+std::string doubts(std::span<const CellResult* const> results) {
+    std::size_t wide = 0, outliers = 0;
+    std::pair<double, const Cell*> most; // drift
+    for (const auto* result : results) {
+        wide += result->converged ? 0 : 1;
+        const auto rounds = round_medians(result->measurement.totals(), result->measurement.rounds());
+        outliers += count_outliers(rounds);
+        if (const auto change = drift(rounds); change && std::abs(*change) > std::abs(most.first))
+            most = {*change, result->cell};
+    }
     std::vector<std::string> notes;
-    if (!result.converged) notes.emplace_back("interval wider than asked for");
-    const auto rounds = round_medians(m.totals(), m.rounds());
-    if (const auto outliers = count_outliers(rounds); outliers > 0)
-        notes.push_back(fmt::format("{} outlier{}", outliers, outliers == 1 ? "" : "s"));
-    if (const auto change = drift(rounds)) notes.push_back(fmt::format("drift {:+.1f} %", *change * 100));
+    if (wide > 0)
+        notes.push_back(results.size() == 1 ? "the interval is wider than asked for"
+                                            : fmt::format("{} of {} intervals are wider than asked for", wide,
+                                                          results.size()));
+    if (outliers > 0) notes.push_back(fmt::format("{} outlier{}", outliers, outliers == 1 ? "" : "s"));
+    if (most.second != nullptr)
+        notes.push_back(
+            fmt::format("drift of up to {:+.1f} % ({})", most.first * 100, describe(*most.second)));
     return fmt::to_string(fmt::join(notes, "; "));
 }
 

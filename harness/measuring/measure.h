@@ -44,7 +44,7 @@ bool measure_cells(const Task& task, std::span<const Cell> cells, References& re
 /// How many rounds other work disturbed, and the most frequent reason; empty when there are none.
 std::string disturbed_text(std::span<const CellResult* const> results);
 
-/// Other reasons to doubt a cell's times, such as drift; empty when there are none.
-std::string doubts(const CellResult& result);
+/// Other reasons to doubt times, such as drift, over all cells; empty when there are none.
+std::string doubts(std::span<const CellResult* const> results);
 
 } // namespace tandem

@@ -25,7 +25,7 @@ struct CellGroups {
 /// name.
 void replace(PlanFile& plan, const Product& given);
 
-/// The devices that the products name, each once; opencl:0 for a product that names none.
+/// The devices that the products name, each once; default_device for a product that names none.
 std::vector<std::string> devices_of(const PlanFile& plan);
 
 /// Returns the devices of the names, as choose_devices().

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <iterator>
 #include <set>
 
 namespace tandem {
@@ -81,6 +82,7 @@ DeviceGroup named_group(const std::vector<BackendReport>& backends, const std::s
 
 /// Whether every device of "D+E+..." is available.
 bool all_available(const std::string& group, const std::vector<BackendReport>& backends) {
+    if (group == default_device) return default_of(backends) != nullptr;
     const auto is_known = [&](const std::string& part) {
         return part == "all" || part == each_model || std::ranges::any_of(backends, [&](const auto& backend) {
                    return std::ranges::any_of(backend.devices, [&](const auto& device) {
@@ -110,7 +112,30 @@ void add_each_model(std::vector<DeviceGroup>& chosen, const std::vector<BackendR
                                      fmt::join(models_of(backends), ", "), reasons(backends)));
 }
 
+/// The first device of a backend that is a GPU, or with `any` the first one; null if there is none.
+Device* first_of(const std::vector<BackendReport>& backends, std::string_view name, bool any = false) {
+    for (const auto& backend : backends)
+        for (const auto& device : backend.devices)
+            if (backend.name == name && (any || device->info().is_gpu)) return device.get();
+    return nullptr;
+}
+
+/// Opens backends until the default device is among them.
+void open_default(std::vector<BackendReport>& backends) {
+    for (const std::string name : {"cuda", "opencl", "host"}) {
+        if (std::ranges::find(backends, name, &BackendReport::name) == backends.end())
+            std::ranges::move(discover({&name, 1}), std::back_inserter(backends));
+        if (first_of(backends, name) != nullptr) return;
+    }
+}
+
 } // namespace
+
+Device* default_of(const std::vector<BackendReport>& backends) {
+    for (const auto* name : {"cuda", "opencl"})
+        if (auto* gpu = first_of(backends, name); gpu != nullptr) return gpu;
+    return first_of(backends, "host", true);
+}
 
 std::string name_of(const DeviceGroup& devices) {
     std::string name;
@@ -123,6 +148,7 @@ std::vector<BackendReport> open_backends(std::span<const std::string> names,
     std::vector<std::string> wanted(names.begin(), names.end());
     wanted.insert(wanted.end(), require.begin(), require.end());
     auto backends = discover(wanted);
+    if (std::ranges::find(names, default_device) != names.end()) open_default(backends);
     const bool known =
         std::ranges::all_of(names, [&](const auto& name) { return all_available(name, backends); })
         && std::ranges::all_of(require, [&](const auto& name) { return is_available(name, backends); });
@@ -139,6 +165,8 @@ std::vector<DeviceGroup> choose_devices(const std::vector<BackendReport>& backen
                 for (const auto& device : backend.devices) add_once(chosen, DeviceGroup{device.get()});
         } else if (asks_for_each(name)) {
             add_each_model(chosen, backends, name);
+        } else if (name == default_device) {
+            add_once(chosen, DeviceGroup{default_of(backends)});
         } else {
             add_once(chosen, named_group(backends, name));
         }

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/quaternion.h"
 #include "base/standard_streams.h"
+#include "harness/plans/device_models.h"
 
 #include <algorithm>
 #include <array>
@@ -96,6 +97,18 @@ std::pair<std::size_t, std::size_t> named_frames(const std::string& frames, cons
     const auto last = colon == std::string::npos ? first : parse_number(text.substr(colon + 1), frames);
     check_frames(scene, first, last);
     return {first, last};
+}
+
+std::vector<BackendReport> open_named(std::span<const std::string> names,
+                                      const std::vector<std::string>& require) {
+    auto backends = open_backends(names, require);
+    check_required(backends, require);
+    if (std::ranges::find(names, default_device) != names.end()) {
+        const auto& info = default_of(backends)->info();
+        put("device {}: {}, {}--device chooses another)\n", info.id, model_name(info),
+            info.is_gpu ? "the first GPU (" : "because there is no GPU ('tandem devices' says why; ");
+    }
+    return backends;
 }
 
 std::vector<DeviceGroup> open_devices(const RunOptions& options, const std::vector<BackendReport>& backends,

@@ -26,6 +26,12 @@ bool bounds_motion(std::span<const Cell> cells);
 std::pair<std::size_t, std::size_t> named_frames(const std::string& frames, const Scene& scene,
                                                  bool bounds_motion = false);
 
+/// Opens the backends of the named and the required devices of a command, and checks that the required ones
+/// are there. Where a name is default_device, prints a line that says which device that is, and why. Throws
+/// InputError.
+std::vector<BackendReport> open_named(std::span<const std::string> names,
+                                      const std::vector<std::string>& require);
+
 /// The named devices, limited to --memory. Throws InputError.
 std::vector<DeviceGroup> open_devices(const RunOptions& options, const std::vector<BackendReport>& backends,
                                       std::span<const std::string> names);

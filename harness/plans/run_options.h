@@ -32,6 +32,7 @@ struct RunOptions { // NOLINT(clang-analyzer-optin.performance.Padding): in the 
     std::optional<std::uint64_t> seed;      ///< seed of the order of cells in a round; none: random
     std::size_t profile = 0;                ///< number of plain replays for a profiler; 0: measure instead
     bool dry_run = false;                   ///< list the cells and measure none
+    bool keys = false;                      ///< with dry_run: also list the keys of the records
     bool resume = false;                    ///< skip the cells that `out` already has
     bool isolate = false;                   ///< run each check and each round of a cell in its own process
     Shard shard;                            ///< which groups of the plan are measured

@@ -87,8 +87,7 @@ Profiling::Profiling(const ProfileOptions& options)
     : options_(options), run_(options.run), progress_(run_.quiet) {
     auto request = run_.request;
     if (request.devices.empty()) request.devices.emplace_back(default_device);
-    backends_ = open_backends(request.devices, run_.require);
-    check_required(backends_, run_.require);
+    backends_ = open_named(request.devices, run_.require);
     auto cells = plan(request, open_devices(run_, backends_, request.devices));
     drop_repeated(cells);
     keep_matching(cells, run_.filter);

@@ -1,22 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "harness/simulate/frame_contacts.h"
 
-#include "base/error.h"
 #include "harness/verify/contact_surfaces.h"
-
-#include <fmt/format.h>
 
 namespace tandem {
 
-FrameContacts::FrameContacts(const std::string& device, const Scene& scene, const std::string& rule)
-    : scene_(scene), backends_(open_backends({&device, 1}, {})) {
+FrameContacts::FrameContacts(std::span<const DeviceGroup> devices, const Scene& scene,
+                             const std::string& rule)
+    : scene_(scene) {
     Request request;
     request.algorithms = {std::string(algorithms().front()->name())};
-    request.devices = {device};
     if (!rule.empty()) request.sets = {{std::string(parameters::contact_rule.name), {rule}}};
-    const auto devices = choose_devices(backends_, request.devices);
-    if (devices.size() != 1)
-        throw InputError(fmt::format("--device {}: contacts need one device; name exactly one", device));
     cell_ = plan(request, devices).front();
     session_ = cell_.algorithm->prepare(cell_.devices, scene, cell_.settings);
 }

@@ -5,6 +5,7 @@
 #include "scenes/export/surfaces.h"
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,9 +15,9 @@ namespace tandem {
 /// contact rule.
 class FrameContacts {
 public:
-    /// The scene must outlive this object. `rule`: as setting contact_rule; empty: the default. Throws
-    /// InputError.
-    FrameContacts(const std::string& device, const Scene& scene, const std::string& rule = {});
+    /// `devices`: one device, which must outlive this object, as must the scene. `rule`: as setting
+    /// contact_rule; empty: the default. Throws InputError.
+    FrameContacts(std::span<const DeviceGroup> devices, const Scene& scene, const std::string& rule = {});
 
     /// Checks the coordinates of this frame, because an export opens only one frame at a time. Throws
     /// InputError.
@@ -29,7 +30,6 @@ private:
     FrameResult run(const Frame& frame);
 
     const Scene& scene_;
-    std::vector<BackendReport> backends_;
     Cell cell_;
     std::unique_ptr<Session> session_;
 };

@@ -232,8 +232,7 @@ int simulate_command(const SimulateOptions& options) {
     std::optional<Pictures> pictures;
     if (!options.pictures.empty()) pictures.emplace(options.pictures);
     const auto request = contacts_request(options);
-    const auto backends = open_backends(request.devices, options.require);
-    check_required(backends, options.require);
+    const auto backends = open_named(request.devices, options.require);
     const auto cell = only_cell(request, backends);
     refuse_settings(cell.settings);
     check_coordinates(cell, scene, scene.frame(0));

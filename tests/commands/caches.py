@@ -6,7 +6,7 @@ line, go on without it, and give the same answer. Without PoCL's, cells fail and
 import os
 import resource
 
-from tests.program import PROGRAM, Case, ran, tandem, words_of
+from tests.program import PROGRAM, Case, messages, ran, tandem, words_of
 
 NONE = {"TANDEM_KERNEL_CACHE": "", "XDG_CACHE_HOME": "", "HOME": ""}
 
@@ -66,7 +66,7 @@ class Caches(Case):
                 env={**os.environ, **NONE, "TANDEM_KERNEL_CACHE": str(folder)},
                 preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0)),
             )
-            errors = [line for line in done.stderr.splitlines() if line and not line.startswith("auto: ")]
+            errors = [line for line in messages(done.stderr) if not line.startswith("auto: ")]
             self.assertEqual((done.returncode, len(errors)), (0, 1), (done.stdout, errors))
             self.assertRegex(
                 errors[0], rf"^tandem: TANDEM_KERNEL_CACHE: {folder} cannot be written \(File too large\)"

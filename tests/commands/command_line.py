@@ -35,6 +35,7 @@ scene                                               | run
 --help                                              | run plates --nonsense
 --help                                              | fly
 """
+BOTH = "\nThe setting of this name:\n"  # of a command and a setting with one name
 UNKNOWN_WORDS = """
 tandem: unknown option --algoritm; did you mean --algorithm? see 'tandem --help' | --algoritm scenes
 option --device must come after a command           | --device host run plates
@@ -61,6 +62,7 @@ CONTRADICTIONS = """
 --dry-run cannot be combined with --dump-contacts   | {run} --dry-run --dump-contacts x
 --dry-run cannot be combined with --dump-distances  | {run} --dry-run --dump-distances x
 --dry-run cannot be combined with --dump-surfaces   | {run} --dry-run --dump-surfaces x
+--keys requires --dry-run                           | {run} --keys
 --pose requires --mesh                              | {run} --pose '{pose}'
 --pose requires --mesh                              | check --pose '{pose}'
 --pose requires --mesh                              | accuracy --pose '{pose}'
@@ -91,12 +93,19 @@ class CommandLine(Case):
             ("scenes", ["plates", "pile", "density", "glasses", "1729", "14793", "16140"]),
             ("algorithms", ["chunked", "gproximity", "tiled", "embree", "unc2010", "seed_threshold"]),
         ):
-            out = self.output(name)
+            text = self.output(name)
             for word in words:
-                self.assertIn(word, out)
+                self.assertIn(word, text)
             out = self.output(name, "--json")
             entries = json.loads(out)
             self.assertGreater(len(entries), 1)
+            if name == "devices":
+                devices = [device for entry in entries for device in entry["devices"]]
+                (chosen,) = (device for device in devices if device["default"])
+                gpus = [device for device in devices if device["kind"] == "gpu"]
+                gpus.sort(key=lambda device: not device["id"].startswith("cuda"))
+                self.assertEqual(chosen["id"], gpus[0]["id"] if gpus else "host")
+                self.assertRegex(text, rf"(?m)^{chosen['id']} .*; the default device$")
             for entry in entries:
                 self.assertLessEqual(keys[name], set(entry))
             self.assertTrue(all(word in out for word in words))
@@ -194,6 +203,57 @@ class CommandLine(Case):
         for word in ("-", "--", "---", "--=", "-=", "-x", "=", ""):
             self.assertEqual(tandem(word, word)[0], 2, word)
             self.assertEqual(tandem("run", "--device", "host", word, word)[0], 2, word)
+
+    def test_help(self):
+        """Of every command: lines of the terminal's width, plain types, examples with known options."""
+        program = tandem("help")[1]
+        self.assertEqual(tandem("--help")[1], program)
+        commands = re.findall(r"(?m)^  ([a-z]+) ", program)
+        self.assertLessEqual({"run", "compare", "help"}, set(commands))
+        for command in commands:
+            text = self.output("help", command)
+            self.assertEqual(tandem(command, "--help")[1], text.split(BOTH)[0])
+            options = set(re.findall(r"(?m)^  (?:-\w, )?(--[\w-]+)", text))
+            examples = re.findall(r"(?m)^    tandem (\w+)(.*)$", text)
+            self.assertTrue(examples or command == "completion", command)
+            for name, words in examples:
+                self.assertEqual(name, command)
+                self.assertLessEqual(set(re.findall(r"--[\w-]+", words)), options)
+            for word in ("TEXT", "UINT", "INT", "FLOAT", "{false}", " in ["):
+                self.assertNotIn(word, text)
+            for columns in (60, 80, 120):
+                lines = tandem(command, "--help", environment={"COLUMNS": str(columns)})[1].splitlines()
+                self.assertLessEqual(max(map(len, lines)), columns)
+        titles = re.findall(r"(?m)^([A-Z].*):$", tandem("help run")[1])
+        self.assertEqual(
+            titles,
+            ["What to measure", "How long to measure", "Checks", "Output", "Machine", "Options", "Examples"],
+        )
+        self.assertEqual(max(map(len, tandem("help run")[1].splitlines())), 80)
+
+    def test_help_with_settings(self):
+        """Of each: what it does, its values, and those of every algorithm's presets."""
+        algorithms = json.loads(tandem("algorithms", "--json")[1])
+        listed = tandem("help settings")[1]
+        parameters = {p["name"]: p for entry in algorithms for p in entry["parameters"]}
+        self.assertEqual(re.findall(r"(?m)^  (\w+) +\S", listed), list(parameters))
+        self.assertIn(BOTH, tandem("help convert")[1])
+        for name, parameter in parameters.items():
+            first, *lines = re.sub(r"\n {4,}", " ", self.output("help", name).split(BOTH)[-1]).splitlines()
+            self.assertEqual(first, f"{name}: {parameter['help']}")
+            span = ["{}..{}".format(*parameter["range"])] if "range" in parameter else []
+            values = ", ".join(span + parameter.get("choices", []))
+            self.assertEqual(lines[0], f"  {'range' if span else 'choices'}: {values}")
+            for entry in algorithms:
+                if name not in {p["name"] for p in entry["parameters"]}:
+                    continue
+                (texts,) = [line for line in lines if re.match(rf"  ([\w, ]+, )?{entry['name']}[,:]", line)]
+                for preset in entry["presets"]:
+                    value = re.escape(preset["settings"][name])
+                    self.assertRegex(texts, rf"[:;] {value} in (all presets|[\w, -]*\b{preset['name']}\b)")
+        self.assertEqual(tandem("help tiled")[1], tandem("algorithms tiled")[1])
+        self.bad("unknown topic 'kk'; the nearest is 'k'", "help", "kk")
+        self.bad("unknown topic 'nothing'; 'tandem help' lists commands", "help", "nothing")
 
     def test_contradictions(self):
         """Options that would have no effect are refused, and the error names the conflicting option."""

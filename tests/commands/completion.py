@@ -14,7 +14,7 @@ from tests.program import PROGRAM, SOURCE, Case, ran, tandem
 BASH = SOURCE / "scripts/completion/tandem.bash"
 ZSH = SOURCE / "scripts/completion/_tandem"
 COMMANDS = (
-    "accuracy algorithms check compare completion convert devices export paper profile report run scenes simulate "
+    "accuracy algorithms check compare completion convert devices export help paper profile report run scenes simulate "
     "view".split()
 )
 
@@ -156,6 +156,8 @@ class Completion(Case):
         ):
             self.assertEqual(asked("run", option, ""), values)
         self.assertEqual(asked("compare", "--format", "m"), ["markdown"])
+        self.assertEqual(asked("help", "contact_r"), ["contact_rule"])
+        self.assertLessEqual({"run", "report", "tiled", "settings", "k"}, set(asked("help", "")))
         self.assertEqual(asked("run", "--format", ""), ["text", "markdown"])
         self.assertEqual(set(asked("run", "--columns", "")), {"pairs/s", "GB/s"})
 

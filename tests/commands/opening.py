@@ -55,7 +55,7 @@ class Opening(unittest.TestCase):
             ("check", SCENE, "--device", "host", "--algorithm", "tiled"),
             ("accuracy", SCENE, "--device", "host", "--set", "k=6", "--repeat", 1, "--truth-contacts", 1),
             ("simulate", "block", "--steps", 1, "--device", "host", "-o", frames),
-            ("export", SCENE, "--vtu", self.work / "vtu", "--contacts"),
+            ("export", SCENE, "--vtu", self.work / "vtu", "--contacts", "--device", "host"),
             ("devices", "--measure", "--device", "host"),
             ("algorithms",),
             ("scenes",),
@@ -72,6 +72,32 @@ class Opening(unittest.TestCase):
         self.assertEqual(
             self.tandem(*RUN, "--device", "host", "--require", "cuda", "--dry-run", cuda=False)[0], 0
         )
+
+    def test_the_default_device_is_the_first_gpu(self):
+        """CUDA is opened first, and OpenCL only where CUDA has no GPU."""
+        first = "device cuda:0: .*, the first GPU \\(--device chooses another\\)\\n"
+        status, out, errors = self.tandem(*RUN, "--dry-run", cuda=False)
+        self.assertEqual((status, errors), (0, ""), out)
+        self.assertRegex(out, rf"\A{first}(.|\n)* on cuda:0\n")
+        self.assertLess(self.tandem(*RUN, "--dry-run", opencl=False)[0], 0)
+        (self.work / "cuda/libcuda.so.1").unlink()
+        self.assertLess(self.tandem(*RUN, "--dry-run")[0], 0)
+
+    def test_without_a_gpu_the_default_device_is_the_host(self):
+        (self.work / "cuda/libcuda.so.1").unlink()
+        (self.work / "icd/trap.icd").unlink()
+        for arguments in (
+            (*RUN, "--dry-run"),
+            ("accuracy", SCENE, "--set", "k=6", "--repeat", 1, "--truth-contacts", 1),
+            ("profile", SCENE, "--algorithm", "tiled", "--repeat", 1),
+            ("simulate", "block", "--steps", 1, "-o", self.work / "block.frames"),
+            ("export", SCENE, "--vtu", self.work / "vtu", "--contacts", "--surfaces", "--pressure", 1),
+        ):
+            status, out, errors = self.tandem(*arguments)
+            self.assertEqual(status, 0, (arguments, errors))
+            self.assertRegex(out, r"\Adevice host: .*, because there is no GPU \('tandem devices' says why; ")
+            self.assertEqual(out.count("--device chooses another"), 1, out)
+        self.assertNotIn("because", self.tandem("check", SCENE, "--algorithm", "tiled")[1])
 
     def test_required_devices_are_opened(self):
         for required in ("opencl", "opencl:0", "cuda"):

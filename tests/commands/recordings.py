@@ -190,7 +190,9 @@ class Recordings(Case):
     def test_export_of_geometry(self):
         """The content of the recording in the format of scenes/export/geometry.h."""
         file, out = self.file("drawn.frames", self.whole), self.work / "drawn.json"
-        text = self.output("export", file, "--frames", "2:8", "--every", 3, "--geometry", out, "--contacts")
+        text = self.output(
+            "export", file, "--frames", "2:8", "--every", 3, "--geometry", out, "--contacts --device host"
+        )
         made = json.loads(out.read_text())
         self.assertEqual(text, f"{out}: 3 of frames 2:8 of {made['key']}\n")
         self.assertTrue(made["key"].startswith("recording:drawn,frames=10"), made["key"])

@@ -16,6 +16,7 @@ import time
 
 from tests.program import PROGRAM, Case, tandem, words_of
 
+LISTED = r"(?m)^ +\d+ +(?:\d+ s|\?)  (.*)$"  # a cell of --dry-run
 SMALL = ("plates:count=2", "--frames", "0:1", "--device", "host", "--truth", "none")
 
 
@@ -66,7 +67,7 @@ class Terminal(Case):
 
     def test_a_cell_has_one_name(self):
         words = (*SMALL, "--algorithm", "tiled,chunked", "--set", "k=8,18")
-        listed = re.findall(r"(?m)^ +\d+  (.*)$", tandem("run", *words, "--dry-run")[1])
+        listed = re.findall(LISTED, tandem("run", *words, "--dry-run")[1])
         self.assertEqual(len(listed), 4)
         status, text = self.in_terminal(150, "run", *words, "--repeat", 2)
         self.assertEqual(status, 0, text)
@@ -85,8 +86,9 @@ class Terminal(Case):
             *SMALL,
             "--algorithm all --preset all --no-check --no-count --set queue_capacity=4096",
         )
-        status, text, errors = tandem(*words, "--dry-run")
+        status, text, errors = tandem(*words, "--dry-run", "--keys")
         self.assertEqual(status, 0, errors)
+        self.assertLess(max(map(len, tandem(*words, "--dry-run")[1].splitlines()[1:])), 100)
         self.assertEqual(tandem(*words, "--out", out)[0], 0)
         records = self.records(out)
         self.assertTrue(
@@ -95,12 +97,12 @@ class Terminal(Case):
         self.assertEqual(
             sorted(re.findall(r"(?m)^ +(\w+\|.*)$", text)), sorted(record["key"] for record in records)
         )
-        text = tandem("run", *SMALL, "--algorithm", "auto", "--dry-run")[1]
-        self.assertRegex(text, r"1  auto on host\n +its key is that of the choice")
+        text = tandem("run", *SMALL, "--algorithm", "auto", "--dry-run", "--keys")[1]
+        self.assertRegex(text, r"1 +\?  auto on host\n +its key is that of the choice")
 
     def test_filter(self):
         words = (*SMALL, "--algorithm", "tiled,chunked", "--set", "k=8,18")
-        names = lambda *more: re.findall(r"(?m)^ +\d+  (.*)$", tandem("run", *words, *more, "--dry-run")[1])
+        names = lambda *more: re.findall(LISTED, tandem("run", *words, *more, "--dry-run")[1])
         every = names()
         self.assertEqual(
             names("--filter", "^tiled|k=8 "),

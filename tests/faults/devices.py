@@ -14,7 +14,7 @@ import subprocess
 import unittest
 
 from tests import pace
-from tests.program import BUILT, LONG, PROGRAM, STUBS, Case, sets, tandem, tried, words_of
+from tests.program import BUILT, LONG, PROGRAM, STUBS, Case, messages, sets, tandem, tried, words_of
 
 SHORT = {"opencl": 4, "cuda": 5}  # runs per command and kind of failure in the short form
 FIRST = {
@@ -128,15 +128,10 @@ class Sweep(Case):
             env=environment,
         )
         try:
-            errors = pace.communicate(running, HANGS)[1].splitlines()
+            errors = messages(pace.communicate(running, HANGS)[1])
         except pace.Hung:
             return folder, Outcome(0, [], True)
-        # PoCL's compiler may print its own messages.
-        return folder, Outcome(
-            running.returncode,
-            [line for line in errors if line.strip() and not line.rstrip().endswith("generated.")],
-            False,
-        )
+        return folder, Outcome(running.returncode, errors, False)
 
     def files(self, folder):
         """The files of a run without a failure that do not depend on time."""

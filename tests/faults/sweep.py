@@ -14,7 +14,7 @@ import shutil
 import subprocess
 
 from tests import pace
-from tests.program import BUILT, LONG, PROGRAM, Case, ran, sets, tandem, tried, words_of, write_json
+from tests.program import BUILT, LONG, PROGRAM, Case, messages, ran, sets, tandem, tried, words_of, write_json
 
 PRELOAD = str(BUILT / "libtandem_faults.so")
 CALLS = {family: family for family in ("open", "write", "fsync", "rename")}
@@ -133,7 +133,7 @@ class Sweep(Case):
         )
         hung = False
         try:
-            errors = pace.communicate(running, HANGS)[1].splitlines()
+            errors = messages(pace.communicate(running, HANGS)[1])
         except pace.Hung:
             hung, errors = True, []
         text = log.read_text().splitlines() if log.exists() else []

@@ -22,6 +22,7 @@ public:
         info_.local_bytes = 49152;
         info_.has_directed_rounding = true;
     }
+    explicit CompilingDevice(DeviceInfo info) : info_(std::move(info)) {}
 
     /// Every requested (file, defines), with its kernel entries.
     const std::map<std::pair<std::string, Defines>, std::set<std::string>>& requested() const {

@@ -21,6 +21,7 @@ from tandem.commands import paper as command
 from tandem.paper import claims, page
 from tandem.paper.folder import Folder
 from tandem.paper.measuring import chosen, steps_of
+from tandem.sequences.needs import Machine
 
 COMMITTED = SOURCE / "results/h200/paper"
 FILES = [
@@ -112,6 +113,9 @@ class Paper(unittest.TestCase):
             "has results of size small on host",
             paper(*self.host, "--size", "full", "--dry-run", code=2).stderr,
         )
+        # Without --device it measures on the program's default.
+        is_host = Machine(str(PROGRAM), self.folder).default == "host"
+        paper("-o", self.folder, "--dry-run", code=0 if is_host else 2)
 
     def test_measuring_needs_the_standard_library_only(self):
         step = self.number("chunks-morton")

@@ -10,7 +10,7 @@ import signal
 import subprocess
 import time
 
-from tests.program import PROGRAM, SMALL, Case, sets, tandem, words_of
+from tests.program import PROGRAM, SMALL, Case, messages, sets, tandem, words_of
 
 CAPACITIES = {
     name: capacity for name, capacity in SMALL.items() if name in ("pair_capacity", "contact_capacity")
@@ -60,7 +60,7 @@ class Isolation(Case):
 
     def end(self, process):
         out, errors = process.communicate()
-        return process.returncode, out, errors.splitlines()
+        return process.returncode, out, messages(errors)
 
     def test_the_same_answers(self):
         local, isolated = self.work / "local.jsonl", self.work / "isolated.jsonl"

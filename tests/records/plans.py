@@ -41,7 +41,7 @@ class PlanCase(Case):
     def listed(self, path, *arguments):
         """(scene, frames, algorithm, k) of every cell that --dry-run lists; checks the plan against the schema."""
         self.assertTrue(self.is_valid(path), path.read_text())
-        status, out, self.errors = tandem("run", path, *arguments, "--dry-run")
+        status, out, self.errors = tandem("run", path, *arguments, "--dry-run", "--keys")
         self.assertEqual(status, 0, (out, self.errors))
         return re.findall(r"(?m)^ +(\w+)\|[^|]+\|(\w+):[^|]*\|([\d:]+)\|.*,k=(\d+),", out)
 
@@ -135,7 +135,7 @@ class Plans(PlanCase):
         status, text, errors = tandem("run", path, "--dry-run")
         self.assertEqual((status, len(errors)), (2, 1), errors)
         self.assertIn("4 cells cannot be listed: ", errors[0])
-        self.assertIn("4 cells, about", text)
+        self.assertIn("4 cells of unknown duration", text)
         self.bad("to-be-made.frames", "run", path)
 
     def test_options_and_the_plan(self):
@@ -218,7 +218,9 @@ class Shards(PlanCase):
 
     def groups(self, path, *arguments, environment=None):
         """Scenes and frames of the cells that a dry run lists, each once and in order; and the cells."""
-        status, out, self.errors = tandem("run", path, *arguments, "--dry-run", environment=environment)
+        status, out, self.errors = tandem(
+            "run", path, *arguments, "--dry-run", "--keys", environment=environment
+        )
         self.assertEqual(status, 0, (out, self.errors))
         cells = re.findall(r"(?m)^ +(\w+)\|([^|]+)\|(\w+):[^|]*\|([\d:]+)\|(.*)$", out)
         return list(dict.fromkeys((scene, frames) for _, _, scene, frames, _ in cells)), cells

@@ -43,7 +43,7 @@ class Running(Case):
                 "--device",
                 record["devices"][0]["id"],
                 *sets,
-                "--dry-run",
+                "--dry-run --keys",
             )
             (key,) = re.findall(rf"(?m)^ +({record['algorithm']}\|.*)$", out)
             listed, recorded = key.split("|"), record["key"].split("|")
@@ -65,7 +65,7 @@ class Running(Case):
             ("18", "18"),
         ):
             out = self.output(
-                f"run plates:count=2 --frames 0 --device host --algorithm tiled --set k={text} --dry-run"
+                f"run plates:count=2 --frames 0 --device host --algorithm tiled --set k={text} --dry-run --keys"
             )
             self.assertEqual(re.findall(r",k=(\d+),", out), values.split())
         for text, message in (
@@ -85,11 +85,12 @@ class Running(Case):
     def test_dry_run_lists_and_writes_nothing(self):
         out = self.work / "dry.jsonl"
         status, text, errors = tandem(
-            "run", *CELLS, "--set", "k=6,8,6", "--seconds", 7, "--dry-run", "--out", out
+            "run", *CELLS, "--set", "k=6,8,6", "--seconds", 7, "--dry-run", "--keys", "--out", out
         )
         self.assertEqual((status, len(errors)), (0, 1), errors)
         self.assertIn("4 cells are named more than once", errors[0])
-        self.assertIn("8 cells, about 56 s of rounds", text)
+        self.assertIn("8 cells, about 56 s of rounds;", text)
+        self.assertEqual(len(re.findall(r"(?m)^ +\d+ +7 s  (?:chunked|tiled) \w+ .*on host$", text)), 8)
         self.assertEqual(len(re.findall(r"(?m)^ +(?:chunked|tiled)\|host:", text)), 8)
         self.assertFalse(out.exists())
 
@@ -134,6 +135,9 @@ class Running(Case):
         out.write_text(
             "".join(lines[:3]) + "".join(json.dumps(record) + "\n" for record in (other, failed, short))
         )
+        text = self.output(*arguments, "--resume", "--dry-run", "--repeat", 2)
+        self.assertEqual(sorted(re.findall(r"(?m)^ +\d +(\d+ s|\?)  \w", text), key=len), ["?"] * 4 + ["0 s"])
+        self.assertIn("5 cells, about 0 s of rounds and 4 cells of unknown duration; 3 more", text)
         text = self.output(*arguments, "--resume", "--dry-run")
         self.assertIn("5 cells, about ", text)
         self.assertIn("; 3 more are already in ", text)
@@ -154,7 +158,7 @@ class Running(Case):
             out = self.work / f"interrupted{number}.jsonl"
             words = [
                 f"run {self.twice} --device host --algorithm chunked,tiled "
-                f"--truth none --no-count --noise 0.0001% --seconds 100000 --out {out}"
+                f"--truth none --no-count --noise 0.0001% --seconds 100000 --quiet --out {out}"
             ]
             process = subprocess.Popen(
                 [str(PROGRAM), *words_of(words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
@@ -182,11 +186,16 @@ class Running(Case):
                 self.assertGreater(record["sampling"]["rounds"], 1)
 
     def test_doubts_about_a_time_are_reported(self):
-        status, text, _ = tandem(
-            f"run {self.twice} --device host --algorithm tiled --truth none --noise 0.0001% --seconds 0.01"
-        )
-        self.assertEqual(status, 0)
-        self.assertIn("interval wider than asked for", text)
+        """One line for all cells."""
+        words = f"run {self.twice} --device host --truth none --noise 0.0001% --seconds 0.01 --algorithm"
+        for algorithms, doubt in (
+            ("tiled", "the interval is wider than asked for"),
+            ("tiled,chunked", "2 of 2 intervals are wider than asked for"),
+        ):
+            status, text, _ = tandem(words, algorithms)
+            self.assertEqual(status, 0)
+            self.assertRegex(text, rf"(?m)^{doubt}(?:;|$)")
+            self.assertEqual(len(re.findall("asked for", text)), 1, text)
 
     def test_tables_fit_a_hundred_columns(self):
         status, text, _ = tandem(

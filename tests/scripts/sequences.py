@@ -25,7 +25,8 @@ MADE_UP = """#!/bin/bash
 case $1 in
   --version) echo "tandem 1 (commit $(cat "$(dirname "$0")/commit"))" ;;
   devices) echo '[{"reason": "cuda: no driver", "devices": []},
-    {"reason": null, "devices": [{"id": "host", "driver": "none", "double": true}, {"id": "opencl:3", "driver": "PoCL 5", "double": false}]}]' ;;
+    {"reason": null, "devices": [{"id": "host", "default": false, "driver": "none", "double": true},
+     {"id": "opencl:3", "default": true, "driver": "PoCL 5", "double": false}]}]' ;;
   run) [[ "$*" == *"--algorithm walk --device host"* ]] || { echo "tandem: no such algorithm" >&2; exit 2; } ;;
   say) echo "$*" | tee -a said ;;
   fail) [ -e mended ] || { echo trying; echo "no luck" >&2; exit 1; } ;;
@@ -187,6 +188,7 @@ class Sequences(unittest.TestCase):
         self.call("maker", "frames")
         self.assertEqual(self.said(), ["simulate -o a.frames", "say a.frames"])
         machine = Machine(str(self.program), self.out)
+        self.assertEqual(machine.default, "opencl:3")
         for need, reason in {
             "device host": "",
             "double host": "",

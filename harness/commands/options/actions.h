@@ -25,5 +25,6 @@ Action add_devices(CLI::App& app);
 Action add_scenes(CLI::App& app);
 Action add_algorithms(CLI::App& app);
 Action add_completion(CLI::App& app);
+Action add_help(CLI::App& app);
 
 } // namespace tandem

@@ -2,6 +2,7 @@
 #include "harness/commands/options/completion.h"
 
 #include "harness/commands/options/actions.h"
+#include "harness/commands/options/help.h"
 #include "harness/commands/options/offers.h"
 #include "base/standard_streams.h"
 
@@ -36,14 +37,10 @@ std::vector<std::string> long_options(const CLI::App& app) {
     return names;
 }
 
-std::vector<const CLI::App*> every_command(const CLI::App& app) {
-    return app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
-}
-
 /// Prints the completions of a word before any command.
 void print_commands(const CLI::App& app, const std::string& text) {
     std::vector<std::string> names;
-    for (const auto* each : every_command(app)) names.push_back(each->get_name());
+    for (const auto* each : listed_commands(app)) names.push_back(each->get_name());
     print({text.starts_with('-') ? long_options(app) : names}, "", text);
 }
 
@@ -81,7 +78,7 @@ int complete(const CLI::App& app, std::span<const std::string> line) {
     const auto rest = words.first(words.empty() ? 0 : words.size() - 1);
     const auto name = std::ranges::find_if(rest, [](const auto& w) { return !w.starts_with('-'); });
     if (name == rest.end()) print_commands(app, word);
-    for (const auto* command : every_command(app))
+    for (const auto* command : listed_commands(app))
         if (name != rest.end() && command->get_name() == *name) print_next({command, rest}, word);
     return 0;
 }
@@ -92,7 +89,9 @@ Action add_completion(CLI::App& app) {
                    "bash or zsh: print the script that completes tandem's commands (cmake --install "
                    "installs it)")
         ->required()
-        ->check(CLI::IsMember({"bash", "zsh"}));
+        ->check(CLI::IsMember({"bash", "zsh"}))
+        ->option_text("SHELL");
+    app.footer("source <(tandem completion bash)");
     return [shell] {
         put_text(completion_script(*shell == "bash" ? Shell::bash : Shell::zsh));
         return 0;

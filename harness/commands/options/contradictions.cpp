@@ -45,6 +45,7 @@ constexpr Rule rules[] = {
     {"--profile", OptionRule::excludes_other, "--isolate", only_replays},
     {"--profile", OptionRule::excludes_other, "--truth=pairs", only_replays},
     {"--profile", OptionRule::excludes_other, "--truth=contacts", only_replays},
+    {"--keys", OptionRule::requires_other, "--dry-run", "only that list has keys"},
     {"--dry-run", OptionRule::excludes_other, "--dump-pairs",
      "no cell is measured, so there are no pairs to write"},
     {"--dry-run", OptionRule::excludes_other, "--dump-contacts",

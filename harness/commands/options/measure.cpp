@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// run, check and accuracy: cells of a scene, measured and compared.
-#include "harness/plans/device_groups.h"
+// run, check, accuracy and profile: cells of a scene, measured and compared.
 #include "harness/commands/options/actions.h"
 #include "harness/commands/options/contradictions.h"
-#include "harness/commands/options/reading.h"
-#include "harness/commands/options/sets.h"
+#include "harness/commands/options/option_groups.h"
+#include "harness/commands/options/shared_options.h"
 #include "harness/commands/accuracy.h"
 #include "harness/commands/check.h"
 #include "harness/commands/run.h"
@@ -23,147 +22,25 @@ namespace tandem {
 
 namespace {
 
-TruthAmount parse_truth(const std::string& text) {
-    if (text == "none") return TruthAmount::none;
-    if (text == "pairs") return TruthAmount::pairs;
-    if (text == "contacts") return TruthAmount::contacts;
-    throw InputError(fmt::format("--truth {}: give none, pairs or contacts", text));
-}
-
-constexpr auto trace_help =
-    "write a timeline of the middle frame of the first finished cell to this JSON file "
-    "(for ui.perfetto.dev or chrome://tracing)";
-constexpr auto scene_help = "NAME, NAME:par=value,..., a scene description (.json) or a recording (.frames)";
-
-/// The options that define the cells: meshes, frames, algorithms, devices and settings.
-void add_cell_options(CLI::App& app, RunOptions& options) {
-    app.add_option("--mesh", options.meshes, "a mesh file of the scene, instead of SCENE; may be repeated")
-        ->expected(1)
-        ->take_all();
-    app.add_option("--pose", options.poses,
-                   "\"tx ty tz qw qx qy qz\", one per --mesh, in order (default: identity)")
-        ->expected(1)
-        ->take_all();
-    add_reading_options(app, options.reading);
-    app.add_option("--algorithm", options.request.algorithms,
-                   "A,B or all (see 'tandem algorithms'; default: all)")
-        ->delimiter(',');
-    app.add_option("--preset", options.request.presets,
-                   "P,Q or all (see 'tandem algorithms'; default: each algorithm's first, for check all)")
-        ->delimiter(',');
-    app.add_option(
-           "--device", options.request.devices,
-           fmt::format(
-               "D,E or all, D+E for one cell on both (see 'tandem devices'; default: {}, for check all)",
-               default_device))
-        ->delimiter(',');
-    app.add_option("--frames", options.frames, "FIRST:LAST, both inclusive, or one number (default: all)");
-    app.add_option_function<std::size_t>(
-           "--threads",
-           [&options](std::size_t threads) {
-               options.request.sets.push_back({"threads", {std::to_string(threads)}});
-           },
-           "number of threads of device host, as --set threads=N (default: one for each core)")
-        ->check(CLI::Range(0, 4096));
-    app.add_option("--filter", options.filter,
-                   "only cells whose name contains a match of this regular expression, as of grep -E; tables "
-                   "and --dry-run show the names")
-        ->option_text("REGEX");
-    add_set_option(
-        app, options.request,
-        "NAME=V1,V2, NAME=A..B:STEP or NAME=A..B*FACTOR: each value makes a cell; may be repeated");
-}
-
-/// The options that `run`, `check`, `accuracy` and `profile` have in common.
-void add_run_options(CLI::App& app, RunOptions& options) {
-    add_cell_options(app, options);
-    app.add_option("--out", options.out,
-                   "append records to this JSON-lines file; an incomplete last line is moved to FILE.torn");
-    app.add_option("--require", options.require, "devices or backends whose absence is an error")
-        ->delimiter(',');
-    app.add_option_function<std::string>(
-           "--truth",
-           [&options](const std::string& text) {
-               options.truth = parse_truth(text);
-               options.truth_is_given = true;
-           },
-           "compare with the exact truth: none, pairs (all pairs of all frames) or contacts (also depths, "
-           "normals and points) (default: pairs; none with output=contacts)")
-        ->option_text("none|pairs|contacts");
-    app.add_option("--truth-contacts", options.truth_contacts,
-                   "maximum number of pairs per frame whose exact contacts are computed (default: all)")
-        ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 40));
-    app.add_option_function<std::string>(
-           "--degenerate",
-           [&options](const std::string& text) { options.degenerate = degenerate_named(text); },
-           "tetrahedra of zero volume: flat (keep them), skip (leave them out) or reject (refuse them); "
-           "files "
-           "with coordinates that are not finite are always refused (default: flat)")
-        ->option_text("flat|skip|reject");
-    app.add_option(
-           "--memory", options.memory,
-           "limit of device memory in bytes (4096, 512MB, 2GiB); frames that need more run in batches "
-           "(default: no limit)")
-        ->transform(CLI::AsSizeValue(false))
-        ->option_text("BYTES");
-    app.add_flag("--quiet", options.quiet, "print no progress line");
-}
-
-/// Accepts "0.01" and turns "1%" into "0.01".
-const CLI::Validator fraction(
-    [](std::string& text) -> std::string {
-        const bool percent = text.ends_with('%');
-        double value = 0;
-        if (!CLI::detail::lexical_cast(percent ? text.substr(0, text.size() - 1) : text, value)
-            || !(value > 0 && value <= (percent ? 100 : 1)))
-            return "give a fraction such as 0.01 or 1%";
-        if (percent) text = CLI::detail::to_string(value / 100);
-        return {};
-    },
-    "FRACTION");
-
-void add_check_afresh(CLI::App& app, RunOptions& options) {
-    app.add_flag("--check-afresh", options.check_afresh,
-                 "compute references and truths again instead of reading stored ones "
-                 "($TANDEM_KERNEL_CACHE, or $XDG_CACHE_HOME/tandem)");
-}
-
 /// Options of `run` only: --algorithm auto and how it chooses.
 void add_choosing(CLI::App& app, RunOptions& options) {
+    app.option_defaults()->group(option_groups::how_long);
     app.get_option("--algorithm")
-        ->description("A,B (see 'tandem algorithms'; default: all, without auto); auto: the algorithm and "
+        ->description("algorithms, or all (see 'tandem algorithms'; default: all); auto: the algorithm and "
                       "settings that are fastest on the first frames");
     app.add_option("--choose-seconds", options.choose_seconds,
                    "auto: limit of the replays that choose for a cell, in seconds; preparing candidates may "
                    "take six times as long (default: 10)")
         ->check(CLI::Range(0.001, 86400.0))
-        ->option_text("S");
+        ->option_text("SECONDS");
     app.add_flag("--choose-afresh", options.choose_afresh,
                  "auto: choose again instead of reading a stored choice ($TANDEM_KERNEL_CACHE, or "
                  "$XDG_CACHE_HOME/tandem)");
 }
 
-/// The stopping criterion and the order of cells.
-void add_sampling(CLI::App& app, RunOptions& options) {
-    app.add_option("--noise", options.noise,
-                   "stop sampling when the 95 % interval of a cell's median is narrower than this fraction "
-                   "(0.01 or 1%), ten rounds at least (default: 1 % on GPUs, 3 % on processors)")
-        ->transform(fraction)
-        ->option_text("P");
-    app.add_option(
-           "--seconds", options.seconds,
-           "or stop when a cell's rounds have taken so many seconds, ten rounds at least (default: 10)")
-        ->check(CLI::Range(0.001, 1e6))
-        ->option_text("S");
-    app.add_option("--repeat", options.repeat,
-                   "take exactly N samples of each cell, instead of --noise and --seconds")
-        ->check(CLI::Range(1, 1000));
-    app.add_option("--seed", options.seed, "seed of the order of cells in each round (default: random)")
-        ->option_text("N");
-}
-
 /// What tables show, and how.
 void add_table(CLI::App& app, RunOptions& options) {
+    app.option_defaults()->group(option_groups::output);
     app.add_option("--columns", options.columns,
                    "further columns of the table: pairs/s (candidate pairs a second), GB/s (bytes a second "
                    "that the kernels need at least: inputs read once, outputs written once)")
@@ -185,11 +62,12 @@ void add_accuracy_run_options(CLI::App& app, RunOptions& options) {
     options.truth_contacts = 1000;
     add_run_options(app, options);
     app.remove_option(app.get_option("--truth"));
-    app.get_option("--algorithm")->description("A,B (see 'tandem algorithms'; default: chunked)");
-    app.get_option("--frames")->description("FIRST:LAST, both inclusive (default: ten in the middle)");
+    app.get_option("--algorithm")
+        ->description("algorithms, or all (see 'tandem algorithms'; default: chunked)");
+    app.get_option("--frames")->description("the first and the last frame (default: ten in the middle)");
     app.get_option("--set")->description(
-        "NAME=V1,V2: values of a setting, each makes a cell (default: sweeps of k, precision and rounding, "
-        "then of precision, decision and contact_rule)");
+        "values of a setting, each makes a cell (default: sweeps of k, precision and rounding, then of "
+        "precision, decision and contact_rule)");
     app.get_option("--truth-contacts")
         ->description("maximum number of pairs per frame whose exact contacts are computed (default: 1000)");
 }
@@ -256,19 +134,43 @@ void apply_plan(CLI::App& app, RunOptions& options) {
 }
 
 void add_dumps(CLI::App& app, RunOptions& options) {
+    app.option_defaults()->group(option_groups::output);
     app.add_option("--dump-pairs", options.dump_pairs,
-                   "write the candidate pairs of the first finished cell to this CSV file");
+                   "write the candidate pairs of the first finished cell to this CSV file")
+        ->option_text("FILE");
     app.add_option("--dump-contacts", options.dump_contacts,
-                   "write the contacts of the first finished cell to this CSV file");
-    app.add_option(
-        "--dump-distances", options.dump_distances,
-        "write the distances of the first finished cell (contact_rule=distance), with both points, to "
-        "this CSV file");
-    app.add_option(
-        "--dump-surfaces", options.dump_surfaces,
-        "write the contact surfaces of the first finished cell (contact_rule=pressure), with their "
-        "corners, to this VTK file (.vtp)");
-    app.add_option("--trace", options.trace, trace_help);
+                   "write the contacts of the first finished cell to this CSV file")
+        ->option_text("FILE");
+    app.add_option("--dump-distances", options.dump_distances,
+                   "write the distances of the first finished cell (contact_rule=distance), with both "
+                   "points, to this CSV file")
+        ->option_text("FILE");
+    app.add_option("--dump-surfaces", options.dump_surfaces,
+                   "write the contact surfaces of the first finished cell (contact_rule=pressure), with "
+                   "their corners, to this VTK file (.vtp)")
+        ->option_text("FILE");
+    add_trace(app, options);
+}
+
+/// The processes that share the work, and those of a profiler.
+void add_processes(CLI::App& app, RunOptions& options) {
+    app.option_defaults()->group(option_groups::machine);
+    auto* isolate = app.add_flag(
+        "--isolate", options.isolate,
+        "run each check and each round of a cell in a process of its own: a crash or hang costs that cell "
+        "only, and differences between processes are part of the noise");
+    auto* timeout = app.add_option("--timeout", options.timeout,
+                                   "--isolate: seconds after which a process is ended (default: no limit)");
+    timeout->needs(isolate)->check(CLI::Range(0.001, 1e7))->option_text("SECONDS");
+    app.add_option_function<std::string>(
+           "--shard", [&options](const std::string& text) { options.shard = parse_shard(text); },
+           "I/N: only the groups of a plan (a scene with its frames) whose number from 0 modulo N is I; "
+           "slurm: I and N of this task in its job array")
+        ->option_text("I/N|slurm");
+    app.add_option("--profile", options.profile,
+                   "replay the frames N times and measure nothing, for an external profiler")
+        ->check(CLI::Range(1, 1000000))
+        ->option_text("N");
 }
 
 } // namespace
@@ -277,63 +179,62 @@ Action add_run(CLI::App& app) {
     auto given = std::make_shared<RunOptions>();
     auto& options = *given;
     app.add_option("scenes", options.scenes,
-                   fmt::format("{}, or a plan of cells (.json, see results/plan.schema.json)", scene_help));
+                   fmt::format("{}, or a plan of cells (.json, see results/plan.schema.json)", scene_help))
+        ->option_text("SCENE...");
     add_run_options(app, options);
+    add_sampling(app, options);
     add_choosing(app, options);
-    app.add_flag("--dry-run", options.dry_run,
-                 "list the cells with their keys and the estimated time; measure none");
+    app.option_defaults()->group(option_groups::output);
+    app.add_flag("--dry-run", options.dry_run, "list the cells with their estimated seconds; measure none");
+    app.add_flag("--keys", options.keys, "--dry-run: also list the keys of their records");
     app.add_flag("--resume", options.resume,
                  "skip the cells that --out already has from a program of the same sources")
         ->needs("--out");
-    add_sampling(app, options);
     add_table(app, options);
-    auto* isolate = app.add_flag(
-        "--isolate", options.isolate,
-        "run each check and each round of a cell in a process of its own: a crash or hang costs that cell "
-        "only, and differences between processes are part of the noise");
-    auto* timeout = app.add_option("--timeout", options.timeout,
-                                   "--isolate: seconds after which a process is ended (default: no limit)");
-    timeout->needs(isolate)->check(CLI::Range(0.001, 1e7))->option_text("S");
-    app.add_option_function<std::string>(
-           "--shard", [&options](const std::string& text) { options.shard = parse_shard(text); },
-           "I/N: only the groups of a plan (a scene with its frames) whose number from 0 modulo N is I; "
-           "slurm: I and N of this task in its job array")
-        ->option_text("I/N|slurm");
-    app.add_option("--profile", options.profile,
-                   "replay the frames N times and measure nothing, for an external profiler")
-        ->check(CLI::Range(1, 1000000));
     add_dumps(app, options);
-    app.add_flag("!--no-count", options.count, "skip the replay that counts work");
-    app.add_flag("!--no-check", options.check, "do not compare with the reference");
+    add_processes(app, options);
+    add_no_check(app, options);
     add_check_afresh(app, options);
+    app.add_flag("!--no-count", options.count, "skip the replay that counts work")
+        ->group(option_groups::checks);
     app.callback([given, line = &app] { apply_plan(*line, *given); });
+    app.footer("tandem run pile --out records.jsonl\n"
+               "tandem run pile:bodies=64 --algorithm tiled,chunked --set k=8,18\n"
+               "tandem run --mesh a.msh --mesh b.msh --pose \"0 0 0 1 0 0 0\" --repeat 10");
     return [given] { return run_command(*given); };
 }
 
-Action add_isolated(CLI::App& app) {
-    app.group(""); // hidden in the help
-    return isolated_command;
-}
+Action add_isolated(CLI::App&) { return isolated_command; }
 
 Action add_check(CLI::App& app) {
     auto given = std::make_shared<RunOptions>();
     app.add_option("scene", given->scene, scene_help);
     add_run_options(app, *given);
+    app.get_option("--preset")->description("presets (see 'tandem algorithms'; default: all)");
+    app.get_option("--device")
+        ->description("devices; D+E is one cell on both (see 'tandem devices'; default: all)");
+    app.footer("tandem check pile --frames 20\n"
+               "tandem check hard:all --device host");
     return [given] { return check_command(*given); };
 }
 
 Action add_accuracy(CLI::App& app) {
     auto given = std::make_shared<AccuracyOptions>();
     auto& options = *given;
-    app.add_option("scenes", options.scenes, scene_help);
+    app.add_option("scenes", options.scenes, scene_help)->option_text("SCENE...");
     add_accuracy_run_options(app, options.run);
+    app.option_defaults()->group(option_groups::how_long);
     app.add_option("--repeat", options.run.repeat, "number of samples of each cell (default: 3)")
-        ->check(CLI::Range(1, 1000));
-    app.add_flag("!--no-check", options.run.check, "do not compare with the reference, only with the truth");
+        ->check(CLI::Range(1, 1000))
+        ->option_text("N");
+    add_no_check(app, options.run);
+    app.get_option("--no-check")->description("do not compare with the reference, only with the truth");
     add_check_afresh(app, options.run);
+    app.option_defaults()->group(option_groups::output);
     app.add_option("--figures", options.figures,
                    "draw the records of --out, or of FOLDER/accuracy.jsonl without --out, into this folder")
         ->option_text("FOLDER");
+    app.footer("tandem accuracy pile:bodies=20 --set k=8,18 --figures out");
     return [given] { return accuracy_command(*given); };
 }
 
@@ -347,13 +248,17 @@ Action add_profile(CLI::App& app) {
     add_run_options(app, run);
     for (const auto* name : {"--truth", "--truth-contacts"}) app.remove_option(app.get_option(name));
     add_sampling(app, run);
-    app.add_option("--ceilings", options.ceilings,
-                   "read the device's ceilings from this file of 'tandem devices --measure --out' (default: "
-                   "measure them)");
-    app.add_option("--trace", run.trace, trace_help);
+    add_no_check(app, run);
+    app.option_defaults()->group(option_groups::output);
     app.add_flag("--all", options.all,
                  "print one row for every kernel (default: one row for all kernels below 1 %)");
-    app.add_flag("!--no-check", run.check, "do not compare with the reference");
+    add_trace(app, run);
+    app.add_option("--ceilings", options.ceilings,
+                   "read the device's ceilings from this file of 'tandem devices --measure --out' (default: "
+                   "measure them)")
+        ->option_text("FILE")
+        ->group(option_groups::machine);
+    app.footer("tandem profile pile --algorithm tiled --trace timeline.json");
     return [given] { return profile_command(*given); };
 }
 

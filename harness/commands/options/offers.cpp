@@ -3,6 +3,7 @@
 
 #include "algorithms/traversal.h"
 #include "backends/registry.h"
+#include "harness/commands/options/topics.h"
 #include "harness/plans/cells.h"
 #include "scenes/dynamics_settings.h"
 #include "scenes/hard/hard.h"
@@ -141,6 +142,7 @@ Offer offer_values(const LineBefore& before, const CLI::Option& option, const st
 Offer offer_arguments(const LineBefore& before, const std::string& text) {
     const auto name = before.command->get_name();
     if (name == "algorithms") return {algorithm_names(before)};
+    if (name == "help") return {topic_names(*before.command->get_parent())};
     if (name == "completion") return {{"bash", "zsh"}};
     static const std::set<std::string> with_scenes{"run", "check", "accuracy", "simulate", "export", "view"};
     return with_scenes.contains(name) ? offer_scenes(text) : Offer{};

@@ -36,7 +36,8 @@ void add_set_option(CLI::App& app, Request& request, const std::string& help) {
            },
            help)
         ->expected(1)
-        ->take_all();
+        ->take_all()
+        ->option_text("NAME=VALUE,...");
 }
 
 } // namespace tandem

@@ -2,6 +2,7 @@
 #include "harness/commands/options/unknown_words.h"
 
 #include "base/error.h"
+#include "harness/commands/options/help.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -26,11 +27,6 @@ std::string nearest_option(const std::string& name, const std::vector<std::strin
     return near.empty() ? std::string(";") : fmt::format("; did you mean --{}?", near);
 }
 
-/// The commands that the help lists.
-std::vector<const CLI::App*> commands_of(const CLI::App& app) {
-    return app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
-}
-
 /// The message for "--algoritm=x" after a command, or before any.
 std::string unknown_option(const CLI::App& app, const CLI::App* command, const std::string& word) {
     const auto text = word.substr(0, word.find('='));
@@ -39,7 +35,7 @@ std::string unknown_option(const CLI::App& app, const CLI::App* command, const s
         return fmt::format("unknown option {}{} see 'tandem {} --help'", text,
                            nearest_option(name, option_names(*command)), command->get_name());
     auto names = option_names(app);
-    for (const auto* each : commands_of(app)) {
+    for (const auto* each : listed_commands(app)) {
         const auto more = option_names(*each);
         if (std::ranges::find(more, name) != more.end())
             return fmt::format("option {} must come after a command: tandem {} {}; see 'tandem --help'", text,
@@ -51,7 +47,7 @@ std::string unknown_option(const CLI::App& app, const CLI::App* command, const s
 
 std::string unknown_command(const CLI::App& app, const std::string& word) {
     std::vector<std::string> names;
-    for (const auto* each : commands_of(app)) names.push_back(each->get_name());
+    for (const auto* each : listed_commands(app)) names.push_back(each->get_name());
     return unknown("command", word, names) + "; see 'tandem --help'";
 }
 

@@ -14,6 +14,7 @@ import sys
 from ..errors import BadUse, OutputError
 from ..text_lines import visible
 
+EXAMPLES = "examples:"
 LIST_OPTIONS = "--list-options"  # the only word when the program completes a command line
 
 
@@ -21,8 +22,14 @@ class Answered(Exception):
     """The words ask for a text, such as the help."""
 
 
-class _Help(argparse.RawDescriptionHelpFormatter):
-    """Writes an option as "-o, --output FILE"."""
+class _Help(argparse.HelpFormatter):
+    """Writes an option as "-o, --output FILE", and keeps the lines of examples."""
+
+    def _fill_text(self, text, width, indent):
+        if text.startswith(EXAMPLES):
+            return text
+        fill = super()._fill_text
+        return "\n\n".join(fill(part, width, indent) for part in text.split("\n\n"))
 
     def _format_action_invocation(self, action):
         if not action.option_strings or action.nargs == 0:
@@ -31,11 +38,15 @@ class _Help(argparse.RawDescriptionHelpFormatter):
 
 
 class Parser(argparse.ArgumentParser):
-    """The options of a command. Raises BadUse instead of printing its usage."""
+    """The options of a command; its help ends with the examples. Raises BadUse instead of printing its usage."""
 
-    def __init__(self, prog, description, **more):
+    def __init__(self, prog, description, *examples, **more):
+        epilog = "\n    ".join([EXAMPLES, *examples]) if examples else None
         super().__init__(
-            **{"formatter_class": _Help, "allow_abbrev": False} | more, prog=prog, description=description
+            **{"formatter_class": _Help, "allow_abbrev": False} | more,
+            prog=prog,
+            description=description,
+            epilog=epilog,
         )
 
     def error(self, message):

@@ -13,7 +13,12 @@ LEVEL, LEVEL_OF_RUNS = 0.05, 0.01  # continuous integration compares builds at e
 
 
 def _parsed(arguments):
-    parser = Parser("tandem compare", __doc__)
+    parser = Parser(
+        "tandem compare",
+        __doc__,
+        "tandem compare old.jsonl new.jsonl",
+        "tandem compare runs.jsonl@1234567 runs.jsonl@89abcde",
+    )
     add = parser.add_argument
     add("old", help="FILE.jsonl of records, or FILE.jsonl@COMMIT for the records of one commit")
     add("new", help="as OLD; may be the same file with another commit")

@@ -12,7 +12,7 @@ from . import Parser, check_packages, run
 
 
 def _parsed(arguments):
-    parser = Parser("tandem convert", __doc__)
+    parser = Parser("tandem convert", __doc__, "tandem convert mesh.inp -o mesh.vtu")
     parser.add_argument("file", help="a mesh file that meshio reads, or a .tet file")
     parser.add_argument("-o", "--output", required=True, metavar="FILE.vtu", help="the file to write")
     return parser.read(arguments)

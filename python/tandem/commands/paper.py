@@ -11,6 +11,7 @@ from ..csv_fields import fields
 from ..errors import BadUse, OutputError
 from ..files import check_output
 from ..paper import measuring
+from ..sequences.needs import Machine
 from ..text_lines import visible
 from . import Parser, check_packages, check_together, print_error, run
 
@@ -119,12 +120,12 @@ def draw(path):
 
 
 def parsed(arguments):
-    parser = Parser("tandem paper", __doc__)
+    parser = Parser("tandem paper", __doc__, "tandem paper -o paper")
     add = parser.add_argument
     folder = "the folder for tables, figures, records and index.html"
     add("-o", "--output", required=True, metavar="FOLDER", help=folder)
-    device = "the device to measure on (default: opencl:0)"
-    add("--device", default="opencl:0", metavar="DEVICE", help=device)
+    device = "the device to measure on (default: the first GPU, else host)"
+    add("--device", metavar="DEVICE", help=device)
     size = "scenes: small, for a processor (10 minutes on two cores), or full, those of the paper, for a GPU (default: small)"
     add("--size", default="small", metavar="small|full", help=size)
     steps = (
@@ -159,6 +160,7 @@ def check_device(program, device):
 
 def _make(options, program):
     if not options.draw_only:
+        options.device = options.device or Machine(program, options.output).default
         check_is_one(options.device)
     if not options.measure_only and not options.dry_run:
         # Fails before anything is measured.

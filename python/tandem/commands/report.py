@@ -14,7 +14,7 @@ MAX_BYTES = 15_900_000
 def _parsed(arguments):
     from ..report.scene import FLAGS, OPTIONS, add_options, check_device
 
-    parser = Parser("tandem report", __doc__)
+    parser = Parser("tandem report", __doc__, "tandem report records.jsonl -o report.html")
     add = parser.add_argument
     kinds = "records of cells, profiles, simulations or ceilings (.jsonl, .jsonl.xz)"
     add("files", nargs="+", help=kinds)

@@ -10,7 +10,7 @@ from . import Parser, check_together, run
 
 
 def _parsed(arguments):
-    parser = Parser("tandem view", __doc__)
+    parser = Parser("tandem view", __doc__, "tandem view pile -o pile.html")
     add = parser.add_argument
     scene = "NAME, NAME:par=value,..., a scene description (.json) or a recording (.frames)"
     add("scene", nargs="?", help=scene)

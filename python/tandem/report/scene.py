@@ -38,7 +38,11 @@ def add_options(parser):
         "show contact surfaces in every frame, coloured by pressure; bodies need pressure fields (--pressure)"
     )
     add("--surfaces", action="store_true", help=surfaces)
-    add("--device", metavar="DEVICE", help="the device that finds contacts and surfaces (default: host)")
+    add(
+        "--device",
+        metavar="DEVICE",
+        help="the device that finds contacts and surfaces (default: the first GPU, else host)",
+    )
 
 
 def check_device(options):

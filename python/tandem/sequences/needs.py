@@ -31,6 +31,11 @@ class Machine:
         """Devices by id."""
         return {device["id"]: device for backend in self._backends for device in backend["devices"]}
 
+    @property
+    def default(self):
+        """The device that the program takes when none is named."""
+        return next(name for name, device in self.devices.items() if device["default"])
+
     @functools.cached_property
     def reasons(self):
         """Why other devices are missing."""

@@ -22,6 +22,20 @@ TEST(Terminal, ProgressNamesTheFractionOfTheTime) {
     EXPECT_EQ(progress_text(7200, 0), "[100 %, 2:00:00, 0:00 left]");
 }
 
+/// What is printed when the text is shown twice, as in a log.
+std::string logged(const Progress& progress) {
+    testing::internal::CaptureStderr();
+    for (const auto* text : {"one", "two"}) progress.show(text, 90);
+    progress.clear();
+    return testing::internal::GetCapturedStderr();
+}
+
+TEST(Terminal, ProgressIsALineEveryPeriodInALog) {
+    EXPECT_EQ(logged(Progress(false, 0)), "[0 %, 0:00, 1:30 left] one\n[0 %, 0:00, 1:30 left] two\n");
+    EXPECT_EQ(logged(Progress(false)), "");
+    EXPECT_EQ(logged(Progress(true, 0)), "");
+}
+
 TEST(Terminal, AColumnOfAmountsHasOneUnit) {
     const auto column = [](const std::vector<std::optional<double>>& amounts) {
         return amounts_column("pairs", amounts);
