@@ -8,6 +8,7 @@ import warnings
 import matplotlib.pyplot as plt
 
 from .labels import labels
+from .names import scene
 
 WINNER, PALE, INK = "#0b5394", "#9aa5b1", "#333333"
 # Wong 2011, "Points of view: Color blindness", Nature Methods 8: distinct for readers with colour blindness.
@@ -38,7 +39,7 @@ def _group_title(cells):
             f"{len(groups)} combinations of scene, frames and device; choose one with records.of(...)"
         )
     first = cells.iloc[0]
-    return f"{str(first['scene']).split(':')[0]}, frames {first['first_frame']}:{first['last_frame']}, {first['device_name']}"
+    return f"{scene(str(first['scene']))}, frames {first['first_frame']}:{first['last_frame']}, {first['device_name']}"
 
 
 def _axes(ax, height):
@@ -93,7 +94,7 @@ def plot_cells(records, ax=None):
     if ax.get_xscale() == "linear":
         ax.set_xlim(left=0)
     ax.margins(x=0.12)
-    ax.set_xlabel("milliseconds a frame, median and 95 % interval", fontsize=8)
+    ax.set_xlabel("milliseconds per frame, median and 95 % interval", fontsize=8)
     first = _and(names[ties]) if ties.sum() < 4 else f"{ties.sum()} cells"
     if ties.sum() > 1:
         message = f"{first} are not told apart"
@@ -152,7 +153,7 @@ def plot_sweep(records, setting, ax=None):
     if not numbers:
         ax.set_xticks(range(positions.max() + 1), values.astype(str).unique())
     ax.set_xlabel(column.removeprefix("set_"), fontsize=8)
-    ax.set_ylabel("milliseconds a frame", fontsize=8)
+    ax.set_ylabel("milliseconds per frame", fontsize=8)
     ax.set_ylim(bottom=0)
     if len(ax.lines) > 1:
         ax.legend(fontsize=7, frameon=False)
@@ -194,7 +195,7 @@ def plot_stages(records, ax=None):
         left = left + stages[name]
     ax.set_yticks(range(len(cells)), labels(cells, without=GROUP), fontsize=8)
     ax.invert_yaxis()
-    ax.set_xlabel("milliseconds a frame", fontsize=8)
+    ax.set_xlabel("milliseconds per frame", fontsize=8)
     ax.legend(
         fontsize=7, frameon=False, ncols=4, loc="upper left", bbox_to_anchor=(0, -0.12 - 1 / (1 + len(cells)))
     )
@@ -308,7 +309,7 @@ def plot_errors(records, error="depth_relative", which="median", ax=None):
     ax.set_xlabel(
         f"{ERRORS.get(error, error)}, {which}" if not error.endswith("_share") else ERRORS[error], fontsize=8
     )
-    ax.set_ylabel("milliseconds a frame", fontsize=8)
+    ax.set_ylabel("milliseconds per frame", fontsize=8)
     fastest, least = best["ms"].idxmin(), best["error"].idxmin()
     if fastest == least:
         message = f"{names[fastest]} is the fastest and has the least error"

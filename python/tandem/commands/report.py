@@ -22,7 +22,7 @@ def _parsed(arguments):
     add("-o", "--output", default="report.html", metavar="FILE", help=page)
     old = "OLD.jsonl or OLD.jsonl@COMMIT: compare the one FILE with it, as 'tandem compare' does"
     add("--against", metavar="OLD", help=old)
-    sentences = "also print the page's sentences: the fastest cell of each comparison"
+    sentences = "also print the fastest cell of each comparison, and what makes the difference"
     add("--sentences", action="store_true", help=sentences)
     add("--scene", metavar="SCENE", help="also show this scene or recording")
     add_options(parser)

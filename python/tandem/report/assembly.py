@@ -14,7 +14,7 @@ SYSTEM = "/usr/share/javascript"
 # Files of libraries, and their Debian packages.
 CHARTS = {"chart.js/chart.min.js": "libjs-chart.js"}
 SCENES = {"three/three.min.js": "libjs-three", "three/examples/js/controls/OrbitControls.js": "libjs-three"}
-CHART_SCRIPTS = ("axes.js", "charts.js", "figures.js", "stages.js", "errors.js", "kernels.js")
+CHART_SCRIPTS = ("axes.js", "charts.js", "overview.js", "figures.js", "stages.js", "errors.js", "kernels.js")
 SCENE_SCRIPTS = ("scale.js", "contacts.js", "surfaces.js", "scene.js", "scene_controls.js")
 SCENE = Section("view", "The scene", is_hidden=True)
 
