@@ -45,8 +45,7 @@ class Overview(ReportCase):
         ]
         _, rows = rows_of(cells)
         self.assertEqual(
-            [row.group.row for row in rows],
-            ["plates, k = 18", *(f"3 jacks, density 0.2, k = {k}" for k in (18, 8))],
+            [row.group.row for row in rows], ["plates", *(f"3 jacks, density 0.2, k = {k}" for k in (18, 8))]
         )
         chart = overview.charted(rows, overview.methods_of(rows), "t")
         self.assertEqual(chart["methods"], ["tiled", "grouped schedule"])

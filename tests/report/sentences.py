@@ -154,8 +154,7 @@ class Sentences(unittest.TestCase):
                     cell_of("a", THREE_MS, "8", scene=elsewhere.record["scene"]),
                 ],
                 [
-                    "a is fastest in 1 of 3 comparisons, 2.00 times as fast as the next method; b in 1, 4.05 times as fast as the next method; "
-                    "c in 1, 3.00 times as fast as the next method."
+                    "a is fastest in 1 of 3 comparisons, 2.00 times as fast as the next method; b in 1, 4.05 times; c in 1, 3.00 times."
                 ],
             ),
             (

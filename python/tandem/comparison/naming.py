@@ -6,16 +6,16 @@ from .. import names
 LAST = "digest"  # least informative, so it comes after the settings
 
 
-class Growing:
-    """Labels under construction, and groups of cells (or of other things) that still have equal labels."""
+class _Growing:
+    """Labels under construction, and groups of cells that still have equal labels."""
 
     def __init__(self, count):
         self.labels, self.groups = [""] * count, [0] * count
 
-    def add(self, texts, is_always=False):
-        """Appends a text to each label if this distinguishes cells of a group, or always. Returns whether it does."""
+    def add(self, texts):
+        """Appends a text to each label if this distinguishes cells of a group. Returns whether it does."""
         pairs = list(zip(self.groups, texts))
-        if len(set(pairs)) == len(set(self.groups)) and not is_always:
+        if len(set(pairs)) == len(set(self.groups)):
             return False
         numbers = {pair: number for number, pair in enumerate(dict.fromkeys(pairs))}
         self.groups = [numbers[pair] for pair in pairs]
@@ -47,7 +47,7 @@ def label(cells):
     which the values before do not."""
     if not cells:
         return [], ""
-    growing, common, named = Growing(len(cells)), [], [*map(_names, cells)]
+    growing, common, named = _Growing(len(cells)), [], [*map(_names, cells)]
     for name, first in named[0].items():
         texts = [own[name] for own in named]
         if name != LAST and not growing.add(texts) and len(set(texts)) == 1 and first:

@@ -17,7 +17,8 @@ GPU = {
 PROCESSOR = {"mhz": "processor at {} MHz", "other_cores": "cores used by other processes: {}"}
 NOT_SAID = {"other_processes": "0"}
 COLUMNS = (
-    *map(Column, ("device", "driver", "commit", "date")),
+    *map(Column, ("device", "driver", "commit")),
+    Column("date", style="whole"),
     Column("cells", True),
     *map(Column, ("rounds", "conditions", "doubts")),
 )

@@ -4,7 +4,7 @@
 import dataclasses
 
 from ..cell import BOUNDS
-from ..comparison.naming import Growing, label
+from ..comparison.naming import label
 from ..verdicts import verdict_of
 
 
@@ -68,11 +68,16 @@ def _rank(group, cells, recorded):
 
 
 def _rows(parts):
-    """A text for each group, of its _parts and then of the driver: the scene, and what distinguishes groups."""
-    growing = Growing(len(parts))
-    for number, texts in enumerate(zip(*parts)):
-        growing.add(texts, is_always=number == 0)
-    return growing.labels
+    """A text for each group, of its _parts and then of driver and digest: the scene, and those parts that distinguish it
+    from groups whose text so far is the same."""
+    scenes, *others = zip(*parts)
+    rows = list(scenes)
+    for texts in others:
+        known = {}
+        for row, text in zip(rows, texts):
+            known.setdefault(row, set()).add(text)
+        rows = [f"{row}, {text}" if text and len(known[row]) > 1 else row for row, text in zip(rows, texts)]
+    return rows
 
 
 def groups_of(cells, verdicts=None):
@@ -87,7 +92,7 @@ def groups_of(cells, verdicts=None):
         group = groups.setdefault(key, Group(", ".join(filter(None, own)), cell.scene))
         group.cells.append(number)
         parts.setdefault(key, [*own, cell.names["driver"], cell.names["digest"]])
-    for group, row in zip(groups.values(), _rows(list(parts.values()))):
+    for group, row in zip(groups.values(), _rows([*parts.values()]) if parts else []):
         group.row = row
         _rank(group, cells, verdicts)
         group.labels = label([cells[number] for number in group.cells])[0]

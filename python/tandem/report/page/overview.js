@@ -8,10 +8,13 @@ tandem.lines = (text, length) => text.replace(/ = /g, "\u00a0=\u00a0").split(" "
   return last !== undefined && (last + " " + word).length <= length ? [...lines.slice(0, -1), `${last} ${word}`] : [...lines, word];
 }, []);
 
+/** Marks of methods, none of which looks crossed out. */
+tandem.methodMarker = method => ["circle", "rect", "triangle", "rectRot", "star", "rectRounded"][method % 6];
+
 /** Colours and marks of cells that are called by their methods, as in the first chart; nothing if one is not. */
 tandem.methodColours = ({overview: {methods}}, cells) => {
   const places = cells.map(cell => methods.indexOf(cell.label));
-  return places.map(place => places.includes(-1) ? {} : {colour: place, pointStyle: tandem.markers[place % tandem.markers.length]});
+  return places.map(place => places.includes(-1) ? {} : {colour: place, pointStyle: tandem.methodMarker(place)});
 };
 
 /** The numbers of all comparisons: cells with their ratios to the fastest. */
@@ -23,7 +26,7 @@ tandem.comparisonRows = groups => groups.flatMap(group => group.ranked.map(([, r
 tandem.methodPoints = (cells, rows, method, methods) => {
   const own = rows.map(row => row.marks[method] === null && row.wrong[method] === null ? null : cells[row.marks[method] ?? row.wrong[method]]);
   const leads = rows.map(row => row.leaders[method]);
-  return {label: methods[method], colour: method, showLine: false, data: own.map(cell => cell && cell.ms[0]), namesLeft: true, pointRadius: leads.map(leader => leader ? 7 : 5),
+  return {label: methods[method], colour: method, pointStyle: tandem.methodMarker(method), showLine: false, data: own.map(cell => cell && cell.ms[0]), namesLeft: true, pointRadius: leads.map(leader => leader ? 7 : 5),
     intervals: own.map(cell => cell && cell.rounds > 1 ? cell.ms.slice(1) : null), crossed: rows.map(row => row.marks[method] === null && row.wrong[method] !== null),
     names: own.map((cell, i) => leads[i] ? `${innerWidth < 640 ? "" : methods[method]} ${cell.ms[0].toPrecision(3)}` : ""),
     texts: own.map((cell, i) => cell && [`${rows[i].name}: ${cell.label}, ${tandem.timeText(cell)}${rows[i].marks[method] === null ? ", WRONG" : ""}`, rows[i].key])};
