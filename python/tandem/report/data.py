@@ -11,7 +11,7 @@ from . import overview, parts
 from .answers import answers
 from .cells import charted, row
 from .conditions import conditions
-from .groups import groups_of
+from .groups import groups_of, is_rankable
 from .numbers import ratio_row
 from .sentences import cautions, finding, group_sentences, stage_text, summary_sentences
 from .sweeps import sweeps_of
@@ -59,6 +59,15 @@ def _history(cells):
     return shown_history(cells)
 
 
+def _order(groups, cells):
+    """Numbers of cells as tables have them: by group, the fastest first, those that are not ranked last."""
+    return [
+        number
+        for group in groups
+        for number in sorted(group.cells, key=lambda at: (not is_rankable(cells[at]), cells[at].ms() or 0))
+    ]
+
+
 def _made(records, differences):
     """PageData of all cells of the records."""
     cells, groups = records.cells, groups_of(records.cells, records.verdicts)
@@ -71,14 +80,18 @@ def _made(records, differences):
             shown.append(row(cell, label, against.get(number)))
             charted_cells.append(charted(cell, label))
     rows = overview.rows_of(groups, cells)
-    groups.sort(key=lambda group: next((i for i, row in enumerate(rows) if row.group is group), len(rows)))
+    groups = overview.in_order(groups, rows)
     history, moves = _history(cells)
     methods = overview.methods_of(rows)
     sections = [
         parts.results([*([differences["title"]] if differences else []), *moves], records.notes, bool(cells)),
         *([answers(groups, cells), conditions(cells, cautions(cells))] if cells else []),
         Section("charts", "Charts", is_hidden=True),
-        *([parts.tables(rows, methods, cells, shown)] if cells else []),
+        *(
+            [parts.tables(rows, methods, cells, [shown[number] for number in _order(groups, cells)])]
+            if cells
+            else []
+        ),
         *([parts.ceilings(records.ceilings)] if records.ceilings else []),
     ]
     data = {

@@ -52,6 +52,12 @@ def rows_of(groups, cells):
     return sorted(rows, key=lambda row: (not row.group.is_informative, row.least(cells)))
 
 
+def in_order(groups, rows):
+    """The groups in the order of their rows; those without a row last."""
+    place = {id(row.group): number for number, row in enumerate(rows)}
+    return sorted(groups, key=lambda group: place.get(id(group), len(rows)))
+
+
 def methods_of(rows):
     """Methods in one order for all pages, those without a name of their own last."""
     known = list(names.METHODS.values())

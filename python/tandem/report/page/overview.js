@@ -2,10 +2,10 @@
 // The first chart: a row for each comparison, a mark for each method, on a logarithmic axis of time.
 "use strict";
 
-/** A text in lines of at most `length` letters, if its parts between commas and equals signs allow it. */
-tandem.lines = (text, length) => text.replace(/ = /g, "\u00a0=\u00a0").split(" ").reduce((lines, word) => {
+/** A text in lines of at most `length` letters, if its parts between commas allow it. */
+tandem.lines = (text, length) => text.split(/(?<=,) /).reduce((lines, part) => {
   const last = lines[lines.length - 1];
-  return last !== undefined && (last + " " + word).length <= length ? [...lines.slice(0, -1), `${last} ${word}`] : [...lines, word];
+  return last !== undefined && (last + " " + part).length <= length ? [...lines.slice(0, -1), `${last} ${part}`] : [...lines, part];
 }, []);
 
 /** Marks of methods, none of which looks crossed out. */
@@ -44,7 +44,7 @@ tandem.overviewFigure = data => {
     return {title, alt: `Milliseconds per frame of ${tandem.count(methods.length, "method", "methods")} in ${tandem.count(rows.length, "row", "rows")}.`,
       notes: left ? [{text: `${left} more rows are in the table of times.`}] : [], type: "line", height: 120 + height * rows.length,
       data: {labels, datasets},
-      options: {indexAxis: "y", scales: {x: tandem.axis("milliseconds per frame, 95 % intervals", times, ends), y: {offset: true, ticks: {autoSkip: false}}}},
+      options: {indexAxis: "y", scales: {x: tandem.axis("ms per frame, 95 % intervals", times, ends), y: {offset: true, ticks: {autoSkip: false}}}},
       table: ["Cells of each comparison, the fastest first", ["comparison", "cell", "ms per frame", "95 %", "times the fastest", "95 % of this ratio", "told apart"],
         tandem.comparisonRows(data.groups).slice(0, 300)]};
   }});

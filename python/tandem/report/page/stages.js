@@ -72,7 +72,7 @@ tandem.stagesFigure = data => {
       notes: folded.length ? [{text: `Small stages, each below ${100 * tandem.smallShare} % of every bar: ${folded.join(", ")}.`}] : [],
       type: "bar", height: 150 + 26 * cells.length,
       data: {labels: cells.map(cell => tandem.shortened(cell.label, tandem.nameLength())), datasets},
-      options: {indexAxis: "y", scales: {x: {stacked: true, title: {display: true, text: "milliseconds per frame, with a clock around every command"}}, y: {stacked: true, ticks: {autoSkip: false}}}},
+      options: {indexAxis: "y", scales: {x: {stacked: true, title: {display: true, text: "ms per frame, every command timed"}}, y: {stacked: true, ticks: {autoSkip: false}}}},
       table: [group.title, ["cell", ...ordered], cells.map((cell, i) => [cell.label, ...ordered.map(name => bars[i][name] ?? 0)])]};
   }});
 };
