@@ -9,6 +9,7 @@ import matplotlib.pyplot as plt
 
 from .labels import labels
 from .names import scene
+from .report.leads import Named, title
 
 WINNER, PALE, INK = "#0b5394", "#9aa5b1", "#333333"
 # Wong 2011, "Points of view: Color blindness", Nature Methods 8: distinct for readers with colour blindness.
@@ -64,7 +65,7 @@ def _figures(value):
 
 def plot_cells(records, ax=None):
     """Draws times of the cells of one scene, frame range and device, fastest first, with 95 % intervals. The
-    title names the fastest cell and its lead, or the cells that are not told apart. Returns the axes. Raises
+    title names the fastest cell and its lead, or the cells that cannot be told apart. Returns the axes. Raises
     ValueError for cells of several scenes, ranges or devices."""
     rankable = _rankable(records.cells)
     where = _group_title(rankable)
@@ -95,17 +96,8 @@ def plot_cells(records, ax=None):
         ax.set_xlim(left=0)
     ax.margins(x=0.12)
     ax.set_xlabel("milliseconds per frame, median and 95 % interval", fontsize=8)
-    first = _and(names[ties]) if ties.sum() < 4 else f"{ties.sum()} cells"
-    if ties.sum() > 1:
-        message = f"{first} are not told apart"
-    elif len(cells) > 1:
-        second = verdict.cells[1]
-        message = (
-            f"{first} is the fastest, the next takes {_figures(second.ratio.value)} times as long"
-            f"{'' if second.has_interval else ' (one round: no interval)'}"
-        )
-    else:
-        message = first
+    named = [Named(*one) for one in zip(verdict.cells, names, cells["ms"])]
+    message = title(named, verdict.answers_differ)
     _title(ax, f"{where}: {message}", TITLE_WIDTH_WITH_NAMES)
     ax.spines[["top", "right"]].set_visible(False)
     return ax
@@ -163,7 +155,9 @@ def plot_sweep(records, setting, ax=None):
         .astype(str)
     )
     result = (
-        "is the fastest value tried" if len(ties) == 1 else "are not told apart, and the fastest values tried"
+        "is the fastest value tried"
+        if len(ties) == 1
+        else "cannot be told apart, and are the fastest values tried"
     )
     _title(ax, f"{where}: {column.removeprefix('set_')} = {_and(ties)} {result}")
     ax.spines[["top", "right"]].set_visible(False)
