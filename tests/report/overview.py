@@ -108,6 +108,7 @@ class Overview(ReportCase):
             "chart.getDatasetMeta(4).data.filter((_, i) => chart.data.datasets[4].crossed[i]).map(({x, y}) => [x, y])"
         )
         self.assertEqual(self.colour(x + 8, y + 8), self.browser.run("tandem.ofStyle('--bad')"))
+        self.assertEqual(self.text("#overview .bad"), "A cross marks a wrong answer.")
         top = self.browser.run("document.getElementById('overview').getBoundingClientRect().bottom")
         self.assertLess(top, 900, "the first screen")
 
@@ -143,6 +144,10 @@ class Answers(ReportCase):
         self.assertEqual(title, "Not all right")
         self.assertIn("2 cells of 4 are right: ", words)
         self.assertIn("3 jacks, density 0.2: gProximity is wrong: its answer is not the reference's.", words)
+        cells[2].record["agreement"] = {"missing": 3, "extra": 0, "contact_frames_wrong": 1}
+        self.assertIn(
+            "gProximity is wrong: 3 pairs missing, contacts differ in 1 of its frames.", self.part(*cells)[1]
+        )
         self.assertIn("3 jacks, density 0.2: leaf queries failed: no memory.", words)
         differ = [cell_of(name, ONE_MS, pairs=Answer(i, "1", "2")) for i, name in enumerate("ab", 1)]
         self.assertIn(

@@ -3,10 +3,17 @@
 were wrong, and what all groups show together."""
 
 from .. import names
+from ..fields import at
 from ..text_lines import one_line
 from .leads import Named, is_slower, slowest_sentence, title
-from .numbers import digits, ends_text
+from .numbers import digits, ends_text, is_number
 
+WRONG = {
+    "missing": "{} pairs missing",
+    "extra": "{} extra",
+    "contact_frames_wrong": "contacts differ in {} of its frames",
+}
+ANOTHER = "its answer is not the reference's"
 MAX_LETTERS = 900  # of sentences on cells that are not ranked
 
 
@@ -50,7 +57,9 @@ def bad_cell_text(group, number, cell):
     """Why a cell of a group is not ranked."""
     if cell.status == "failed":
         return f"{_label(group, number)} failed: {one_line(cell.failure, 200)}"
-    return f"{_label(group, number)} is wrong: its answer is not the reference's"
+    counts = ((at(cell.record, "agreement", name), text) for name, text in WRONG.items())
+    wrong = ", ".join(text.format(count) for count, text in counts if is_number(count) and count)
+    return f"{_label(group, number)} is wrong: {wrong or ANOTHER}"
 
 
 def _not_ranked(group, cells):

@@ -42,7 +42,7 @@ tandem.overviewFigure = data => {
     const [least, most] = [Math.min(...times), Math.max(...times)];  // with space for a name on the left
     const ends = {type: "logarithmic", min: least / (most / least) ** (innerWidth < 640 ? 0.25 : 0.12), max: most * (most / least) ** 0.03};
     return {title, alt: `Milliseconds per frame of ${tandem.count(methods.length, "method", "methods")} in ${tandem.count(rows.length, "row", "rows")}.`,
-      notes: left ? [{text: `${left} more rows are in the table of times.`}] : [], type: "line", height: 120 + height * rows.length,
+      notes: [rows.some(row => row.wrong.some(cell => cell !== null)) && {text: "A cross marks a wrong answer.", bad: true}, left && {text: `${left} more rows are in the table of times.`}].filter(note => note), type: "line", height: 120 + height * rows.length,
       data: {labels, datasets},
       options: {indexAxis: "y", scales: {x: tandem.axis("ms per frame, 95 % intervals", times, ends), y: {offset: true, ticks: {autoSkip: false}}}},
       table: ["Cells of each comparison, the fastest first", ["comparison", "cell", "ms per frame", "95 %", "times the fastest", "95 % of this ratio", "told apart"],
