@@ -5,13 +5,12 @@ import functools
 import json
 import lzma
 import pathlib
-import re
 import statistics
 import sys
 
 RESULTS = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(RESULTS.parent / "python"))
-from tandem import cell
+from tandem import cell, names
 from tandem.resampling import Ratio, median_interval, paired_ratio
 
 
@@ -55,12 +54,8 @@ class Cell(cell.Cell):
 
 
 def scene_name(scene):
-    """How pages name a scene: by its name in a plan, or by its key in a record."""
-    kind, _, rest = scene.partition(":")
-    values = dict(re.findall(r"(\w+)=([^,]+)", rest))
-    if kind == "pile":
-        return f"{int(values['bodies']):,} {values['mesh']}s, density {values['density']}"
-    return rest.partition(",")[0] if kind == "recording" else pathlib.Path(kind).stem
+    """How pages name a scene: by its text in a plan, which may be a file, or by its key in a record."""
+    return names.scene(pathlib.Path(scene).stem if scene.endswith(".frames") else scene)
 
 
 def paired(cell, base):

@@ -9,6 +9,7 @@ import os
 import statistics
 
 from . import lines
+from . import names as known_names
 from .fields import DECLARED, at, frames_of, milliseconds, needed, text_of
 from .telling import warn
 
@@ -242,14 +243,13 @@ def _joined(devices, field):
     return "+".join(needed(device, field) for device in devices)
 
 
-def _split_scene(key, settings):
-    """Splits "NAME:par=value,par=value" into the scene's name and its parameters. The name is the whole key
-    if a part is not a parameter, or has the name of a setting."""
-    name, colon, rest = key.partition(":")
+def _scene_parameters(key, settings):
+    """Parameters of "NAME:par=value,par=value"; none if a part is not a parameter, or has the name of a setting."""
+    _, colon, rest = key.partition(":")
     parameters = dict(part.partition("=")[::2] for part in rest.split(",")) if colon else {}
     if not all("=" in part for part in rest.split(",") if colon) or parameters.keys() & settings.keys():
-        return key, {}
-    return name, parameters
+        return {}
+    return parameters
 
 
 def _handling(record):
@@ -267,14 +267,14 @@ def _settings_and_names(record):
     if not all(isinstance(value, str) for value in settings.values()):
         raise TypeError("settings must be strings")
     devices, frames, scene = record["devices"], record["frames"], record["scene"]
-    scene_name, parameters = _split_scene(scene["key"], settings)
+    parameters = _scene_parameters(scene["key"], settings)
     names = {
         "algorithm": record["algorithm"],
         "preset": record["preset"],
         "devices": _joined(devices, "id"),
         "model": _joined(devices, "name"),
         "driver": _joined(devices, "driver"),
-        "scene": scene_name,
+        "scene": known_names.scene(scene["key"]),
         "frames": f"frames {frames['first']}:{frames['last']}",
         "handling": _handling(record),
         "digest": f"digest {scene['digest']}",

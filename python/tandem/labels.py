@@ -3,11 +3,17 @@
 
 import pandas
 
-NAMES = ("algorithm", "preset", "device", "device_name", "scene", "first_frame", "last_frame")
+from . import names
+
+METHOD = "method"  # of the columns algorithm and preset
+NAMES = (METHOD, "device", "device_name", "scene", "first_frame", "last_frame")
 
 
 def _texts(cells, name):
-    column = cells[name]
+    if name == METHOD:
+        methods = [names.method(*map(str, pair)) for pair in zip(cells["algorithm"], cells["preset"])]
+        return pandas.Series(methods, index=cells.index)
+    column = cells[name].map(names.scene) if name == "scene" else cells[name]
     words = column.astype(str).where(column.notna(), "")
     if not name.startswith("set_"):
         return words
@@ -15,7 +21,7 @@ def _texts(cells, name):
 
 
 def labels(cells, without=()):
-    """A text for each row of `cells` (from Records.cells). It has the columns of NAMES and then settings, but
+    """A text for each row of `cells` (from Records.cells). It has the names of NAMES and then settings, but
     only those that distinguish rows that the columns before do not. Leaves out columns `without`. Rows that
     do not differ have equal texts."""
     settings = [name for name in cells.columns if name.startswith("set_")]
@@ -27,7 +33,8 @@ def labels(cells, without=()):
         texts = _texts(cells, name)
         if not (texts.groupby(groups).nunique() > 1).any():
             continue
-        parts = (parts + " " + texts).str.strip()
+        separator = ", " if (parts + texts).str.contains(",").any() else " "
+        parts = parts.where((parts == "") | (texts == ""), parts + separator) + texts
         groups = pandas.Series(list(zip(groups, texts)), index=cells.index).factorize()[0]
         groups = pandas.Series(groups, index=cells.index)
-    return parts.where(parts != "", cells["algorithm"].astype(str))
+    return parts.where(parts != "", _texts(cells, METHOD))

@@ -8,6 +8,8 @@ import warnings
 import matplotlib.pyplot as plt
 
 from .labels import labels
+from .names import scene
+from .report.leads import Named, title
 
 WINNER, PALE, INK = "#0b5394", "#9aa5b1", "#333333"
 # Wong 2011, "Points of view: Color blindness", Nature Methods 8: distinct for readers with colour blindness.
@@ -38,7 +40,7 @@ def _group_title(cells):
             f"{len(groups)} combinations of scene, frames and device; choose one with records.of(...)"
         )
     first = cells.iloc[0]
-    return f"{str(first['scene']).split(':')[0]}, frames {first['first_frame']}:{first['last_frame']}, {first['device_name']}"
+    return f"{scene(str(first['scene']))}, frames {first['first_frame']}:{first['last_frame']}, {first['device_name']}"
 
 
 def _axes(ax, height):
@@ -63,7 +65,7 @@ def _figures(value):
 
 def plot_cells(records, ax=None):
     """Draws times of the cells of one scene, frame range and device, fastest first, with 95 % intervals. The
-    title names the fastest cell and its lead, or the cells that are not told apart. Returns the axes. Raises
+    title names the fastest cell and its lead, or the cells that cannot be told apart. Returns the axes. Raises
     ValueError for cells of several scenes, ranges or devices."""
     rankable = _rankable(records.cells)
     where = _group_title(rankable)
@@ -93,18 +95,9 @@ def plot_cells(records, ax=None):
     if ax.get_xscale() == "linear":
         ax.set_xlim(left=0)
     ax.margins(x=0.12)
-    ax.set_xlabel("milliseconds a frame, median and 95 % interval", fontsize=8)
-    first = _and(names[ties]) if ties.sum() < 4 else f"{ties.sum()} cells"
-    if ties.sum() > 1:
-        message = f"{first} are not told apart"
-    elif len(cells) > 1:
-        second = verdict.cells[1]
-        message = (
-            f"{first} is the fastest, the next takes {_figures(second.ratio.value)} times as long"
-            f"{'' if second.has_interval else ' (one round: no interval)'}"
-        )
-    else:
-        message = first
+    ax.set_xlabel("milliseconds per frame, median and 95 % interval", fontsize=8)
+    named = [Named(*one) for one in zip(verdict.cells, names, cells["ms"])]
+    message = title(named, verdict.answers_differ)
     _title(ax, f"{where}: {message}", TITLE_WIDTH_WITH_NAMES)
     ax.spines[["top", "right"]].set_visible(False)
     return ax
@@ -152,7 +145,7 @@ def plot_sweep(records, setting, ax=None):
     if not numbers:
         ax.set_xticks(range(positions.max() + 1), values.astype(str).unique())
     ax.set_xlabel(column.removeprefix("set_"), fontsize=8)
-    ax.set_ylabel("milliseconds a frame", fontsize=8)
+    ax.set_ylabel("milliseconds per frame", fontsize=8)
     ax.set_ylim(bottom=0)
     if len(ax.lines) > 1:
         ax.legend(fontsize=7, frameon=False)
@@ -162,7 +155,9 @@ def plot_sweep(records, setting, ax=None):
         .astype(str)
     )
     result = (
-        "is the fastest value tried" if len(ties) == 1 else "are not told apart, and the fastest values tried"
+        "is the fastest value tried"
+        if len(ties) == 1
+        else "cannot be told apart, and are the fastest values tried"
     )
     _title(ax, f"{where}: {column.removeprefix('set_')} = {_and(ties)} {result}")
     ax.spines[["top", "right"]].set_visible(False)
@@ -194,7 +189,7 @@ def plot_stages(records, ax=None):
         left = left + stages[name]
     ax.set_yticks(range(len(cells)), labels(cells, without=GROUP), fontsize=8)
     ax.invert_yaxis()
-    ax.set_xlabel("milliseconds a frame", fontsize=8)
+    ax.set_xlabel("milliseconds per frame", fontsize=8)
     ax.legend(
         fontsize=7, frameon=False, ncols=4, loc="upper left", bbox_to_anchor=(0, -0.12 - 1 / (1 + len(cells)))
     )
@@ -308,7 +303,7 @@ def plot_errors(records, error="depth_relative", which="median", ax=None):
     ax.set_xlabel(
         f"{ERRORS.get(error, error)}, {which}" if not error.endswith("_share") else ERRORS[error], fontsize=8
     )
-    ax.set_ylabel("milliseconds a frame", fontsize=8)
+    ax.set_ylabel("milliseconds per frame", fontsize=8)
     fastest, least = best["ms"].idxmin(), best["error"].idxmin()
     if fastest == least:
         message = f"{names[fastest]} is the fastest and has the least error"

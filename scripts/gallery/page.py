@@ -7,14 +7,14 @@ from tandem.pages.tables import Column, Row, table
 from tandem.report.cells import commit, interval
 from tandem.report.conditions import conditions_text, sampling_text
 from tandem.report.groups import groups_of
-from tandem.report.leads import interval_text
+from tandem.report.leads import ratio_text
 from tandem.report.numbers import digits
 from tandem.report.sentences import group_sentences, summary_sentences
 
 COLUMNS = (
     Column("rank"),
     Column("cell"),
-    *(Column(name, True) for name in ("ms a frame [95 %]", "times the first", "candidate pairs")),
+    *(Column(name, True) for name in ("ms per frame [95 %]", "times the first", "candidate pairs")),
     *map(Column, ("conditions", "sampling", "commit", "record")),
 )
 FOOTER = "Made by scripts/results-page of tandem, under the MIT license. The page contains no work of others."
@@ -55,7 +55,7 @@ def _group(group, sources):
             sources[one.cell],
             str(rank),
             labels[one.cell],
-            f"{digits(one.ratio.value)} {interval_text(one.ratio, one.has_interval)}" if rank > 1 else "",
+            ratio_text(one.ratio, one.has_interval) if rank > 1 else "",
         )
         for rank, one in enumerate(ranked, 1)
     ]

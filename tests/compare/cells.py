@@ -22,7 +22,7 @@ def record(key="8", samples=(1,), rounds=None, session=None):
         "status": "ok",
         "failure": None,
         "algorithm": "chunked",
-        "preset": "resident",
+        "preset": "grouped",
         "settings": {"k": key, "rounding": "safe"},
         "scene": {"key": "pile:bodies=2,density=0.4", "digest": "00ff"},
         "frames": {"first": 0, "last": 9},
@@ -170,29 +170,29 @@ class Naming(Files):
 
     def test_labels_name_the_differences(self):
         records = [record(key) for key in ("8", "18", "9", "10")]
-        records[2]["algorithm"] = "tiled"
+        records[2].update(algorithm="tiled", preset="resident")
         records[3]["scene"]["key"], records[3]["settings"]["k"] = "pile:bodies=9,density=0.4", "8"
         self.assertEqual(
             self.labels(*records),
             (
                 [
-                    "chunked bodies=2 k=8",
-                    "chunked bodies=2 k=18",
-                    "tiled bodies=2 k=9",
-                    "chunked bodies=9 k=8",
+                    "grouped schedule, 2 jacks, density 0.4, k=8",
+                    "grouped schedule, 2 jacks, density 0.4, k=18",
+                    "tiled, 2 jacks, density 0.4, k=9",
+                    "grouped schedule, 9 jacks, density 0.4, k=8",
                 ],
-                "resident, cuda:0, GPU, 1, pile, frames 0:9",
+                "cuda:0, GPU, 1, frames 0:9",
             ),
         )
 
     def test_one_cell_and_cells_that_differ_only_in_keys(self):
-        self.assertEqual(self.labels(record())[0], ["chunked"])
+        self.assertEqual(self.labels(record())[0], ["grouped schedule"])
         records = [record("8"), record("18")]
         records[1]["settings"]["k"] = "8"
-        self.assertEqual(self.labels(*records)[0], ["chunked", "chunked #2"])
+        self.assertEqual(self.labels(*records)[0], ["grouped schedule", "grouped schedule #2"])
         # Text that only resembles parameters, or has names of settings, stays in the scene's name.
         records[0]["scene"]["key"], records[1]["scene"]["key"] = "mesh:a.msh", "pile:k=3"
-        self.assertEqual(self.labels(*records)[0], ["mesh:a.msh", "pile:k=3"])
+        self.assertEqual(self.labels(*records)[0], ["mesh:a.msh", "64 jacks, density 0.2, k 3"])
 
 
 class Verdicts(Files):

@@ -51,7 +51,7 @@ class Compare(Case):
         for label in ("k=8 ", "k=18 "):
             row = next(line for line in out.splitlines() if line.startswith(label))
             self.assertEqual(row.split()[-3:][0], "≈")
-        self.assertIn("all  chunked, grouped, cuda:0, NVIDIA H200", out)
+        self.assertIn("all  grouped schedule, cuda:0, NVIDIA H200", out)
         self.assertLessEqual(max(map(len, out.splitlines())), 100)
 
     def test_slower_and_faster(self):
@@ -93,7 +93,7 @@ class Compare(Case):
         other["work"]["digest"] = {"count": 7, "a": "00", "b": "00"}
         old = self.write(record())
         out = self.compared(old, self.write(other), code=1)
-        self.assertIn("another answer: chunked: 7 candidate pairs instead of 6883390", out)
+        self.assertIn("another answer: grouped schedule: 7 candidate pairs instead of 6883390", out)
         self.assertNotIn("20.0", out)
         cell = self.json_of(old, self.write(other), code=1)["cells"][0]
         self.assertEqual((cell["verdict"], cell["times"]), ("another_answer", None))
@@ -102,9 +102,10 @@ class Compare(Case):
         old, new = self.write(record()), self.write(record())
         self.assertEqual(record()["frames"], {"first": 20, "last": 121})
         out = self.compared(old, new)
-        self.assertIn("ms   milliseconds a frame", out)
+        self.assertIn("ms   milliseconds per frame", out)
         self.assertEqual(
-            next(line for line in out.splitlines() if line.startswith("chunked ")).split()[1], "0.09853"
+            next(line for line in out.splitlines() if line.startswith("grouped schedule ")).split()[2],
+            "0.09853",
         )  # 10.05 ms / 102 frames
         cell = self.json_of(old, new)["cells"][0]
         self.assertEqual(cell["old"]["frame_ns"], cell["old"]["median_ns"] / 102)
@@ -118,7 +119,9 @@ class Compare(Case):
         }
         old, new = self.write(record(session="s")), self.write(disturbed)
         out = self.compared(old, new).replace("\n  ", " ")
-        self.assertIn(" disturbed ", next(line for line in out.splitlines() if line.startswith("chunked ")))
+        self.assertIn(
+            " disturbed ", next(line for line in out.splitlines() if line.startswith("grouped schedule "))
+        )
         self.assertIn("new: 9 of 9 rounds are disturbed (busy: other processes use 1.0 of 2 cores)", out)
         self.assertIn("1 changed in disturbed rounds only", out)
         found = self.json_of(old, new, "--strict", code=1)

@@ -115,7 +115,7 @@ class Charts(ReportCase):
             self.text("#stages .quiet"), "Small stages, each below 3 % of every bar: seed, read."
         )
         self.assertEqual(self.texts("#stages th"), ["cell", *shown, "seed", "read"])
-        self.assert_title("stages", "The stage traverse takes 44 % of the time of ")
+        self.assert_title("stages", "Stage traverse takes 44 % of the time of ")
 
     def test_a_colour_does_not_depend_on_other_stages(self):
         fill = "chart.data.datasets.find(one => one.label === 'traverse').backgroundColor"
@@ -144,7 +144,8 @@ class Charts(ReportCase):
         )
         self.assertIn("seed_threshold = 0: ", self.chart("sweeps", label))
         self.assert_title(
-            "sweeps", "seed_threshold = 1000 is the fastest; the next takes 2.000 times as long ["
+            "sweeps",
+            "seed_threshold = 1000 is fastest: 1.68 ms per frame, 2.00 times as fast as seed_threshold = 0 [",
         )
 
     def test_one_round_has_the_same_words_everywhere(self):
@@ -153,10 +154,12 @@ class Charts(ReportCase):
             total = record["total_ns"]
             total.update({name: total[name][:1] for name in ("samples", "rounds", "frames")})
         self.opened_with(*records)
-        rows = [f"#{part} tbody tr{end}" for part in ("medians", "sweeps") for end in ("", ":last-child")]
-        for where in ("#summary li", "#medians h3", "#sweeps h3", *rows, "#cells tbody tr"):
+        rows = [f"#{part} tbody tr{end}" for part in ("overview", "sweeps") for end in ("", ":last-child")]
+        for where in (*rows, "#cells .sorts tbody tr"):
             self.assertIn("one round: no interval", self.text(where), where)
-        self.assertNotIn("the fastest", self.text("#summary") + self.text("#charts"))
+        for figure in ("overview", "sweeps"):
+            self.assertIn(" took the least time in one round: ", self.text(f"#{figure} h3"))
+        self.assertNotIn("is fastest", self.text("#results") + self.text("#charts"))
 
     def test_errors_have_names_and_an_axis_of_powers(self):
         self.opened(self.report(SOURCE / "tests/records/accuracy.jsonl"))
@@ -165,7 +168,10 @@ class Charts(ReportCase):
         unbeaten = self.chart("error", "chart.data.datasets[0].names")
         self.assertGreaterEqual(len(set(drawn) & set(unbeaten)), 3)
         self.assertGreater(len(drawn), len(unbeaten))
-        self.assert_title("error", "sat fp64 safe double has the least error; its median time is ")
+        self.assert_title(
+            "error",
+            "sat fp64 safe double has the least error, and takes 2.13 times as long as opposing fp32 safe float",
+        )
         for values, first in (("0, 1e-7, 0.002, 1", ["0", "10⁻⁷"]), ("1e-7, 0.002, 1", ["10⁻⁷"])):
             ticks = self.browser.run(f"tandem.logScale('', [{values}], false).ticks.map(tick => tick.text)")
             self.assertEqual((ticks[: len(first)], ticks[-1]), (first, "1"))

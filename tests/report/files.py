@@ -5,6 +5,7 @@ records, missing libraries, and escaping of all text."""
 
 import copy
 import functools
+import html
 import json
 import lzma
 import os
@@ -214,7 +215,7 @@ class Pages(Case):
         """A name in a record is no path."""
         record = json.loads((H200 / "plan.jsonl").read_text().splitlines()[0])
         for names, drawn in (
-            (("tiled", "chunked", "tiled"), ["chunked", "tiled"]),
+            (("tiled", "chunked", "tiled"), ["grouped schedule and paper's schedule", "tiled"]),
             (("embree", "../methods/tiled", "<b>"), []),
         ):
             path = self.work / "some.jsonl"
@@ -223,7 +224,9 @@ class Pages(Case):
             text = "".join(
                 map(markup, (part.content for part in data_of(read_records([str(path)]), 1_000_000).sections))
             )
-            self.assertEqual(re.findall("<summary><span>How (.*?) works</span></summary>", text), drawn)
+            self.assertEqual(
+                re.findall("<summary><span>How it works: (.*?)</span></summary>", html.unescape(text)), drawn
+            )
             self.assertEqual(
                 text.count('<svg xmlns="http://www.w3.org/2000/svg" class="drawing"'), len(drawn)
             )

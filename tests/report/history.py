@@ -103,7 +103,7 @@ class History(ReportCase):
         records = [*self.series(1, 1, 1, 1, key="i"), *self.series(1, 1, 1.25, 1.25, key="j")]
         self.opened(self.report(self.write("chart.jsonl", records)))
         self.assertRegex(
-            self.text("#summary"),
+            self.text("#results .lead"),
             r"Over 4 commits, 1 of 2 cells moved\. pad=j takes 1\.2\d+ times as long \[1\.2\d*, 1\.2\d*\] since ccccccc\.",
         )
         self.assertRegex(self.text("#history h3"), "^pad=j takes 1.2")

@@ -111,7 +111,7 @@ class ResultsPage(ScriptCase):
             (own,) = [row for row in rows if row and row[-1] == "bert.jsonl:1, submitted"]
             self.assertEqual((own[0], own[3]), ("wrong", ""))
             self.assertEqual(sum(row[0].isdigit() for row in rows if row), 3)
-            self.assertIn("was wrong, and is not ranked", text)
+            self.assertIn("is wrong: its answer is not the reference", text)
 
     def test_answers_that_nothing_checks_are_shown_apart(self):
         record = self.submission()

@@ -52,6 +52,7 @@ class Scenes(ReportCase):
 
     def test_keys_buttons_and_choices(self):
         self.view(("plates", "--frames", "20:23", "--contacts"), 1280, 900)
+        self.choose("view", "frame", 0, "input")
         seen = [self.browser.run(CAMERA)]
         self.browser.run("document.getElementById('scene-canvas').focus()")
         self.browser.key("ArrowRight")
@@ -73,6 +74,33 @@ class Scenes(ReportCase):
         self.choose("view", "colour", "chunk")
         self.assertGreater(self.hues(), 3 * bodies)
 
+    def test_the_first_picture_is_of_the_frame_with_most_contacts(self):
+        for contacts, frames in ((("--contacts",), "20:24"), ((), "0:4")):
+            self.view(("plates", "--frames", frames, *contacts), 1280, 900)
+            data = self.browser.run(
+                "({frames: tandem.sceneView.data.frames, found: tandem.sceneView.data.contacts?.map(frame => frame.found)})"
+            )
+            expected = data["found"].index(max(data["found"])) if contacts else 4
+            self.assertEqual(self.browser.run("tandem.sceneView.frame"), expected)
+            self.assertEqual(self.browser.run("document.getElementById('frame-slider').value"), str(expected))
+            self.assertIn(f"Frame {data['frames'][expected]}: ", self.text("#scene-words"))
+        self.browser.run("document.querySelector('[aria-label=\"Play or pause\"]').click()")
+        self.browser.until("tandem.sceneView.frame === 1")
+
+    def test_contacts_grow_with_the_picture(self):
+        parts = []
+        for width, height in ((1400, 900), (716, 450)):  # of equal shape without their margins
+            self.view(("plates", "--frames", "20", "--contacts"), width, height)
+            count, *_ = zip(*self.pixels(0).values())
+            canvas = self.browser.run(
+                "(({width, height}) => [width, height])(document.getElementById('scene-canvas'))"
+            )
+            parts.append(sum(count) / canvas[1] ** 2)
+        self.assertAlmostEqual(parts[0] / parts[1], 1, delta=0.25)
+        self.browser.run("tandem.sceneView.camera.zoom = 2; tandem.sceneView.camera.updateProjectionMatrix()")
+        nearer, *_ = zip(*self.browser.run(COLOURS).values())
+        self.assertGreater(sum(nearer), 2 * sum(count))
+
     def hues(self):
         """The number of distinct hues, of 36, in the picture."""
         colours = ([int(part) / 255 for part in name.split(",")] for name in self.browser.run(COLOURS))
@@ -80,10 +108,9 @@ class Scenes(ReportCase):
         return len({int(36 * hue) for hue, _, saturation in seen if saturation > 0.5})
 
     def pixels(self, frame):
-        """COLOURS of the points of contacts alone."""
+        """COLOURS of the contacts alone."""
         self.browser.run(
-            f"tandem.sceneView.show({frame}); tandem.sceneView.objects.forEach(object => {{ object.visible = false; }}); "
-            "tandem.sceneView.contacts.normals.visible = false"
+            f"tandem.sceneView.show({frame}); tandem.sceneView.objects.forEach(object => {{ object.visible = false; }})"
         )
         return self.browser.run(COLOURS)
 
@@ -107,7 +134,7 @@ class Scenes(ReportCase):
     def test_contacts_without_depth_are_plain(self):
         self.view(("plates", "--frames", "20", "--contacts"), 1400, 900)
         self.browser.run("tandem.sceneView.data.deepest = 0")
-        drawn = self.pixels(0)  # edges of points are blended with the background
+        drawn = self.pixels(0)  # edges are blended with the background
         self.assertEqual(max(drawn, key=drawn.get), "255,45,149")
         self.assertNotIn("253,231,37", drawn)
         self.assertIsNone(self.browser.run("tandem.depthLegend(tandem.sceneView.data)"))

@@ -6,24 +6,33 @@ sentences, conditions, and omissions for lack of space."""
 import dataclasses
 import json
 import re
+import statistics
 import unittest
 
 from tests.report.case import Shown
 
 from tandem.cell import Answer, Cell
 from tandem.pages.markup import markup
+from tandem.report.cells import COLUMNS
 from tandem.report.conditions import conditions_text, sampling_text
 from tandem.report.data import data_of
 from tandem.report.groups import groups_of
+from tandem.report.leads import ratio_text
 from tandem.report.reading import Records
-from tandem.report.sentences import group_sentences, summary_sentences
-from tandem.report.sweeps import sweeps_of
+from tandem.ratio import Ratio
+from tandem.report.sentences import group_sentences, stage_text, summary_sentences
 
 ONE_MS = [1.0, 1.01, 0.99, 1.0, 1.02, 0.98, 1.0, 1.01, 0.99, 1.0]
 TWO_MS = [2 * ms for ms in ONE_MS]
 THREE_MS = [3 * ms for ms in ONE_MS]
 NEARLY_ONE_MS = [ONE_MS[4], ONE_MS[1] + 0.002, *ONE_MS[2:4], ONE_MS[0], *ONE_MS[5:]]
 PAIRS = Answer(3, "1", "2")
+
+
+def _summary(samples):
+    return (
+        {"median": statistics.median(samples), "low": min(samples), "high": max(samples)} if samples else {}
+    )
 
 
 def cell_of(algorithm, rounds, k="18", pairs=None, kind="gpu", stages=None, **changes):
@@ -36,12 +45,12 @@ def cell_of(algorithm, rounds, k="18", pairs=None, kind="gpu", stages=None, **ch
         "status": "ok",
         "failure": None,
         "algorithm": algorithm,
-        "preset": "resident",
+        "preset": "",
         "settings": {"k": k},
         "devices": [{"id": "cuda:0", "name": "GPU", "driver": "1", "kind": kind}],
         "scene": {"key": "pile:bodies=3", "name": "pile", "digest": "1", "bodies": 3, "tetrahedra": 36},
         "frames": {"first": 0, "last": 0},
-        "total_ns": {"samples": samples, "rounds": [*range(len(samples))]},
+        "total_ns": {"samples": samples, "rounds": [*range(len(samples))], **_summary(samples)},
         "stages": {
             name: {"device_ns": {"median": 1e6 * ms}, "host_ns": {"median": 0}}
             for name, ms in (stages or {}).items()
@@ -65,46 +74,48 @@ class Sentences(unittest.TestCase):
         older.is_older = True
         a, b = cell_of("a", ONE_MS), cell_of("b", TWO_MS)
         for cells, ranked, parts in (
-            (
-                [b, a],
-                [1, 0],
-                ["a is the fastest of 2 with 1.000 ms a frame; the next, b, takes 2.000 times as long ["],
-            ),
+            ([b, a], [1, 0], ["a is fastest: 1.00 ms per frame, 2.00 times as fast as b ["]),
             (
                 [a, b, cell_of("c", THREE_MS)],
                 [0, 1, 2],
                 [
-                    "a is the fastest of 3 with 1.000 ms a frame; the next, b, takes 2.000",
-                    "The slowest, c, takes 3.000 times as long",
+                    "a is fastest: 1.00 ms per frame, 2.00 times as fast as b [",
+                    "The slowest, c, takes 3.00 times as long [",
                 ],
             ),
-            ([a, cell_of("b", NEARLY_ONE_MS)], [0, 1], ["is not told apart from it (1.000 times its time ["]),
+            (
+                [a, cell_of("b", NEARLY_ONE_MS)],
+                [0, 1],
+                ["a and b cannot be told apart: 1.00 ms per frame, ratio ["],
+            ),
             (
                 [cell_of("a", [1.0]), cell_of("b", [2.0])],
                 [0, 1],
-                ["takes 2.000 times as long (one round: no interval)"],
+                ["a took the least time in one round: 1.00 ms per frame, 2.00 times as fast as b."],
             ),
             (
                 [b, cell_of("a", ONE_MS, status="wrong"), cell_of("c", ONE_MS, **failed), older],
                 [0],
                 [
-                    "b takes 2.000 ms a frame; there is nothing to compare it with.",
-                    "a was wrong, and is not ranked: its answer is not the reference's.",
-                    "c failed, and is not ranked: no memory.",
+                    "b takes 2.00 ms per frame; there is nothing to compare it with.",
+                    "a is wrong: its answer is not the reference's.",
+                    "c failed: no memory.",
                 ],
             ),
             (
                 [cell_of("a", ONE_MS, pairs=PAIRS), cell_of("b", TWO_MS, pairs=Answer(4, "1", "2"))],
                 [0, 1],
-                ["none counts as the fastest"],
+                ["Answers differ: these times are of different work."],
             ),
             ([cell_of("a", ONE_MS, pairs=Answer(0, "0", "0")), b], [1], []),
-            ([cell_of("a", [], **failed)], [], ["None of its cells has valid times."]),
+            ([cell_of("a", [], **failed)], [], ["None of these cells has valid times."]),
         ):
             group, sentences = first_group(cells)
             self.assertEqual([one.cell for one in group.ranked], ranked, sentences)
             self.assertEqual([part for part in parts if part not in sentences], [], sentences)
-        self.assertEqual(first_group([a])[0].title, "pile, frames 0:0, k = 18, on cuda:0 (GPU)")
+        self.assertEqual(
+            first_group([a])[0].title, "3 jacks, density 0.2, frames 0:0, k = 18, on cuda:0 (GPU)"
+        )
         self.assertEqual(len(groups_of([a, cell_of("a", TWO_MS, "8")])), 2)  # other bounds
         for name, usual, value in (
             ("margin", "0", "0.1"),
@@ -120,29 +131,55 @@ class Sentences(unittest.TestCase):
         older = cell_of("d", ONE_MS)
         older.is_older = True
         bad = cell_of("b", ONE_MS, status="wrong"), cell_of("c", ONE_MS, status="failed", failure="x")
+        differ = [cell_of("a", ONE_MS, pairs=PAIRS), cell_of("b", TWO_MS, pairs=Answer(4, "1", "2"))]
+        eight = [cell_of("a", ONE_MS, "8"), cell_of("b", TWO_MS, "8")]
+        elsewhere = cell_of("c", ONE_MS, "8", scene=a.record["scene"] | {"key": "plates", "digest": "2"})
+        nearly = cell_of("b", NEARLY_ONE_MS)
         for cells, summary in (
+            ([a, b], ["a is fastest: 1.00 ms per frame, 2.00 times as fast as b [1.97, 2.03]."]),
             (
-                [a, b],
+                [a, b, elsewhere],
                 [
-                    "a is the fastest in the only comparison; the best other algorithm takes 2.000 times as long."
+                    "3 jacks, density 0.2: a is fastest: 1.00 ms per frame, 2.00 times as fast as b [1.97, 2.03]."
+                ],
+            ),
+            ([a, b, *eight], ["a is fastest in all 2 comparisons, 2.00 times as fast as the next method."]),
+            (
+                [
+                    a,
+                    b,
+                    cell_of("a", [4.0, 4.1], "8"),
+                    cell_of("b", ONE_MS, "8"),
+                    elsewhere,
+                    cell_of("a", THREE_MS, "8", scene=elsewhere.record["scene"]),
+                ],
+                [
+                    "a is fastest in 1 of 3 comparisons, 2.00 times as fast as the next method; b in 1, 4.05 times; c in 1, 3.00 times."
                 ],
             ),
             (
-                [a, cell_of("b", NEARLY_ONE_MS), cell_of("a", ONE_MS, "8"), cell_of("b", TWO_MS, "8")],
+                [a, nearly, *eight],
                 [
-                    "a leads in all 2 comparisons; the best other algorithm takes 1.000 to 2.000 times "
-                    "as long, and is told apart from it in 1 of these."
+                    "a is fastest in 1 of 2 comparisons, 2.00 times as fast as the next method; the two fastest methods "
+                    "cannot be told apart in 1."
                 ],
             ),
             (
                 [b, *bad, older],
                 [
+                    "b takes 2.00 ms per frame; there is nothing to compare it with.",
                     "1 failed and 1 gave a wrong answer: they are shown as such and never ranked.",
                     "1 were recorded again later: the last record that is ok counts.",
                 ],
             ),
-            ([cell_of("a", ONE_MS, pairs=PAIRS), cell_of("b", TWO_MS, pairs=Answer(4, "1", "2"))], []),
-            ([cell_of("a", ONE_MS, kind="cpu")], ["Times on processors do not predict times on a GPU."]),
+            (differ, ["Answers differ: these times are of different work."]),
+            (
+                [cell_of("a", ONE_MS, kind="cpu")],
+                [
+                    "a takes 1.00 ms per frame; there is nothing to compare it with.",
+                    "Times on processors do not predict times on a GPU.",
+                ],
+            ),
         ):
             self.assertEqual(summary_sentences(groups_of(cells), cells), summary)
 
@@ -150,17 +187,17 @@ class Sentences(unittest.TestCase):
         """Compared with the first cell that takes longer with its whole interval; times of stages that are
         shorter count against others."""
         most, largest = (
-            f"{part} of the difference from b is in stage {{}}: {{}} ms a frame instead of {{}}."
-            for part in ("Most", "The largest part")
+            f"Stage {{}} makes {part} of the difference: {{}} ms per frame with a, {{}} with b"
+            for part in ("most", "the largest part")
         )
         for first, second, third, sentence in (
             (
                 {"traverse": 0.5, "contact": 0.4},
                 {"traverse": 1.3, "contact": 0.6},
                 {},
-                most.format("traverse", "0.500", "1.300"),
+                most.format("traverse", "0.500", "1.30"),
             ),
-            ({"traverse": 0.5}, {"traverse": 0.4, "balance": 1.0}, {}, most.format("balance", "0", "1.000")),
+            ({"traverse": 0.5}, {"traverse": 0.4, "balance": 1.0}, {}, most.format("balance", "0", "1.00")),
             (
                 {"traverse": 0.5, "contact": 0.3},
                 {"traverse": 0.9, "contact": 0.8, "refit": 0.3},
@@ -171,40 +208,43 @@ class Sentences(unittest.TestCase):
                 {"traverse": 0.5},
                 {"traverse": 1.5},
                 {"traverse": 3.0},
-                most.format("traverse", "0.500", "1.500"),
+                most.format("traverse", "0.500", "1.50"),
             ),
             ({}, {"traverse": 1.5}, {}, ""),
             ({"traverse": 1.0}, {"traverse": 0.9}, {}, ""),
         ):
             cells = [cell_of("a", ONE_MS, stages=first), cell_of("b", TWO_MS, stages=second)]
             cells += [cell_of("c", [ms + 0.001 for ms in ONE_MS], stages=third)] if third else []
-            self.assertEqual(
-                first_group(cells)[1].partition("[")[2].partition("]. ")[2].partition(" The s")[0], sentence
-            )
+            group, sentences = first_group(cells)
+            self.assertEqual(stage_text(group, cells), sentence)
+            self.assertIn(f" {sentence}." if sentence else "", sentences)
 
     def test_a_title_agrees_with_its_sentence(self):
-        """Title, sentence and the words behind the name of the first come from one verdict."""
-        lowest, one_round = ", which leads", "(one round: no interval)"
-        for other, first, behind, word in (
+        """The title of the first chart, its marks and the sentence come from one verdict."""
+        for other, first, leaders in (
+            (TWO_MS, "a is fastest: 1.00 ms per frame, 2.00 times as fast as b [", [True, False]),
+            (NEARLY_ONE_MS, "a and b cannot be told apart: 1.00 ms per frame, ratio [", [True, True]),
             (
-                TWO_MS,
-                "a is the fastest; the next takes 2.000 times as long [",
-                ", the fastest",
-                "fastest of 2",
+                [2.0],
+                "a took the least time in one round: 1.00 ms per frame, 2.00 times as fast as b",
+                [True, False],
             ),
-            (
-                NEARLY_ONE_MS,
-                "a and the next are not told apart: 1.000 times as long [",
-                lowest,
-                "not told apart",
-            ),
-            ([2.0], f"a leads; the next takes 2.000 times as long {one_round}", lowest, one_round),
         ):
             cells = [cell_of("a", ONE_MS[: len(other)]), cell_of("b", other)]
             data = data_of(Records(["some.jsonl"], cells), 1_000_000)
-            [group] = json.loads(data.json)["groups"]
-            self.assertEqual((group["lead"][: len(first)], group["which"]), (first, behind))
-            self.assertIn(word, data.sentences[0])
+            chart = json.loads(data.json)["overview"]
+            self.assertEqual(chart["title"][: len(first)], first)
+            self.assertEqual((chart["methods"], chart["rows"][0]["leaders"]), (["a", "b"], leaders))
+            self.assertIn(f"{chart['title']}.", data.sentences[0])
+
+    def test_ratios_near_1_have_more_digits(self):
+        for values, text in (
+            ((1.0031, 1.0012, 1.0049), "1.003 [1.001, 1.005]"),
+            ((1.0003, 1.0001, 1.0005), "1.0003 [1.0001, 1.0005]"),
+            ((1.004, 0.998, 1.012), "1.00 [0.998, 1.01]"),
+            ((2.168, 2.145, 2184.2), "2.17 [2.15, 2,184]"),
+        ):
+            self.assertEqual(ratio_text(Ratio(*values, 0.0), True), text)
 
     def test_the_fastest_is_so_by_its_ratios(self):
         """The second has the greater median, but most of its rounds are faster than those of the first."""
@@ -213,7 +253,7 @@ class Sentences(unittest.TestCase):
         group, sentences = first_group([cell_of("a", rounds, session="s"), cell_of("b", other, session="s")])
         self.assertEqual([one.cell for one in group.ranked], [1, 0])
         self.assertTrue(group.ranked[1].is_told_apart)
-        self.assertIn("b is the fastest", sentences)
+        self.assertIn("b is fastest: ", sentences)
 
     def test_rounds_of_one_session_are_pairs(self):
         """Rounds that rise and fall together distinguish cells of one session, but not cells of two sessions."""
@@ -230,53 +270,6 @@ class Sentences(unittest.TestCase):
         _, sentences = first_group(cells)
         self.assertTrue(sentences.endswith(" There are more."), sentences)
         self.assertLess(len(sentences), 1300)
-
-
-def swept(setting, values, times, k="18", pairs=None, **changes):
-    """Cells with these values of a setting, each with its rounds."""
-    return [
-        cell_of(
-            "a",
-            rounds,
-            pairs=pairs and Answer(pairs + i, "1", "2"),
-            **{"settings": {"k": k, setting: value}, "key": f"a|k={k}|{setting}={value}"} | changes,
-        )
-        for i, (value, rounds) in enumerate(zip(values, times))
-    ]
-
-
-class Sweeps(unittest.TestCase):
-    def test_a_line_and_its_verdict(self):
-        [sweep] = sweeps_of(swept("seed_threshold", ["1000", "0", "10"], [TWO_MS, THREE_MS, ONE_MS]))
-        self.assertEqual(
-            (sweep["setting"], sweep["of"], sweep["all"]),
-            ("seed_threshold", "pile:bodies=3, frames 0:0, k = 18, on cuda:0 (GPU)", 1),
-        )
-        self.assertEqual(sweep["lines"], [{"name": "a", "points": [[0, 1], [10, 2], [1000, 0]]}])
-        self.assertIn(
-            "seed_threshold = 10 is the fastest of 3 cells with 1.000 ms a frame; the next, seed_threshold = 1000, takes",
-            sweep["words"],
-        )
-
-    def test_titles(self):
-        times = [ONE_MS, TWO_MS, THREE_MS]
-        for setting, rounds, pairs, title in (
-            ("seed_threshold", times, 0, "= 1 is the fastest; the next takes 2.000 times as long ["),
-            ("seed_threshold", [[1.0], [2.0], [3.0]], 0, "= 1 leads; the next takes 2.000 times"),
-            ("seed_threshold", times, 3, "Answers differ: these times are of different work"),
-            ("k", times, 3, "k = 1 is the fastest"),
-        ):
-            [sweep] = sweeps_of(swept(setting, ["1", "10", "100"], rounds, pairs=pairs))
-            self.assertIn(title, sweep["title"])
-        cells = [cell for k in ("18", "8") for cell in swept("seed_threshold", ["0", "1", "2"], times, k)]
-        found = [(sweep["of"].split(", ")[2], sweep["all"]) for sweep in sweeps_of(cells)]
-        self.assertEqual(found, [("k = 18", 1), ("k = 8", 1)])
-
-    def test_what_is_no_sweep(self):
-        times = [ONE_MS, TWO_MS, TWO_MS]
-        self.assertEqual(sweeps_of(swept("rounding", ["safe", "1", "2"], times)), [])
-        self.assertEqual(sweeps_of(swept("seed_threshold", ["0", "1"], times[:2])), [])
-        self.assertEqual(sweeps_of(swept("seed_threshold", ["0", "1", "2"], times, status="wrong")), [])
 
 
 class Conditions(unittest.TestCase):
@@ -326,7 +319,7 @@ class Data(unittest.TestCase):
             data = data_of(records, size)
             shown = Shown(markup([section.content for section in data.sections]))
             self.assertEqual(len(json.loads(data.json)["cells"]), data.cells)
-            self.assertEqual(sum(len(row) > 1 for row in shown.rows), data.cells)
+            self.assertEqual(sum(len(row) == len(COLUMNS) for row in shown.rows), data.cells)
             self.assertTrue(
                 least <= data.cells <= most and (data.size <= size or most == 0), (data.cells, data.size)
             )

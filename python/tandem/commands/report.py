@@ -22,7 +22,7 @@ def _parsed(arguments):
     add("-o", "--output", default="report.html", metavar="FILE", help=page)
     old = "OLD.jsonl or OLD.jsonl@COMMIT: compare the one FILE with it, as 'tandem compare' does"
     add("--against", metavar="OLD", help=old)
-    sentences = "also print the page's sentences: the fastest cell of each comparison"
+    sentences = "also print the fastest cell of each comparison, and what makes the difference"
     add("--sentences", action="store_true", help=sentences)
     add("--scene", metavar="SCENE", help="also show this scene or recording")
     add_options(parser)
@@ -58,7 +58,7 @@ def _write(options, program):
     """Writes the page and returns the output line. Raises scene.ExportEnded and the errors that run() handles."""
     from ..pages.frame import html_of
     from ..pages.markup import element
-    from ..report.assembly import SCENE, open_page, write_page
+    from ..report.assembly import open_page, scene_section, write_page
     from ..report.scene import shown_scene, words_of
 
     if options.against and len(options.files) != 1:
@@ -82,7 +82,10 @@ def _write(options, program):
         page.data["scene"] = scene.json
     free_bytes = MAX_BYTES - empty - sum(map(size_of, page.data.values()))
     data = data_of(records, free_bytes, compared)
-    page.data["records"], page.sections = data.json, data.sections + [SCENE] * bool(scene)
+    page.data["records"], page.sections = (
+        data.json,
+        data.sections + ([scene_section(scene.key)] if scene else []),
+    )
     version, date = _made_by(program)
     against = f", against {compared['old']}" if compared else ""
     page.lead = element(

@@ -3,8 +3,9 @@
 
 import re
 
+from .. import names
 from ..files import check_output
-from ..report.assembly import SCENE, open_page, write_page
+from ..report.assembly import open_page, scene_section, write_page
 from ..report.scene import add_options, check_device, shown_scene, words_of
 from . import Parser, check_together, run
 
@@ -37,8 +38,8 @@ def _make(options, program):
         check_output(options.output, [*filter(None, (options.scene,)), *(options.mesh or ())], ".partial")
     page = open_page("", False, True, program, "tandem view")
     scene = shown_scene(program, words_of(options.scene, options), options.output)
-    page.title, page.data["scene"] = f"{scene.name}, a scene of tandem", scene.json
-    page.sections = [SCENE]
+    page.title, page.data["scene"] = f"{names.scene(scene.key)}: a scene of tandem", scene.json
+    page.sections = [scene_section(scene.key)]
     path = options.output or _file_name(scene.name)
     if not options.output:
         check_output(path, (), ".partial")

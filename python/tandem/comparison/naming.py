@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Short names of cells, made only of what differs among them."""
 
+from .. import names
+
 LAST = "digest"  # least informative, so it comes after the settings
 
 
@@ -17,7 +19,8 @@ class _Growing:
             return False
         numbers = {pair: number for number, pair in enumerate(dict.fromkeys(pairs))}
         self.groups = [numbers[pair] for pair in pairs]
-        self.labels = [f"{label} {text}".strip() for label, text in zip(self.labels, texts)]
+        separator = ", " if any("," in text for text in (*self.labels, *texts)) else " "
+        self.labels = [separator.join(filter(None, pair)) for pair in zip(self.labels, texts)]
         return True
 
 
@@ -31,15 +34,22 @@ def _numbered(cells, labels):
     return numbered
 
 
+def _names(cell):
+    """Texts that name a cell, the most significant first, with the name of its method."""
+    return {"method": names.method(cell.algorithm, cell.preset)} | {
+        name: text for name, text in cell.names.items() if name not in ("algorithm", "preset")
+    }
+
+
 def label(cells):
     """A text for each Cell, in order, and one text with the values that all share. Texts of different
     keys differ. A text has those names, and then those settings in alphabetical order, that distinguish cells
     which the values before do not."""
     if not cells:
         return [], ""
-    growing, common = _Growing(len(cells)), []
-    for name, first in cells[0].names.items():
-        texts = [cell.names[name] for cell in cells]
+    growing, common, named = _Growing(len(cells)), [], [*map(_names, cells)]
+    for name, first in named[0].items():
+        texts = [own[name] for own in named]
         if name != LAST and not growing.add(texts) and len(set(texts)) == 1 and first:
             common.append(first)
     for setting in sorted({name for cell in cells for name in cell.described}):
@@ -47,5 +57,5 @@ def label(cells):
             [f"{setting}={cell.described[setting]}" if setting in cell.described else "" for cell in cells]
         )
     growing.add([cell.names[LAST] for cell in cells])
-    labels = [text or cells[0].names["algorithm"] for text in growing.labels]
+    labels = [text or named[0]["method"] for text in growing.labels]
     return _numbered(cells, labels), ", ".join(common)

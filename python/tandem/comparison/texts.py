@@ -11,7 +11,7 @@ from .notes import notes, summary
 
 HEADING = ("cell", "old ms", "new ms", "new/old [95 %]", "p (Holm)", "verdict", "detectable")
 LEFT = (0, len(HEADING) - 2)
-UNIT = "milliseconds a frame, medians"
+UNIT = "milliseconds per frame, medians"
 
 
 def _milliseconds(ns):

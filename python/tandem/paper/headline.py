@@ -54,7 +54,8 @@ def _finite(measured):
 def _resident(rows):
     parts = []
     for name, words in zip(
-        [name for name in FOUR if name != "gProximity"], ("the paper's schedule", "ours, grouped,", "tiled")
+        [name for name in FOUR if name != "gProximity"],
+        ("the paper's schedule", "the grouped schedule", "tiled"),
     ):
         values = _finite(row["ratios"][name] for row in rows)
         parts.append(

@@ -7,8 +7,10 @@ import functools
 import pathlib
 import tomllib
 
+from .. import names as known_names
+
 STATEMENTS = pathlib.Path(__file__).parent / "statements"
-FOUR = ("paper's schedule", "ours, grouped", "gProximity", "tiled")  # everything resident
+FOUR = ("paper's schedule", "grouped schedule", "gProximity", "tiled")  # everything resident
 PUBLISHED = ("chunked published", "gProximity published")
 
 
@@ -32,11 +34,8 @@ def columns_of(table):
 
 
 def name_of(case):
-    """The name of a case's method, such as "paper's schedule", or its algorithm and preset."""
-    for name, wanted in names()["cells"].items():
-        if (wanted["algorithm"], wanted["preset"]) == (case.algorithm, case.preset):
-            return name
-    return f"{case.algorithm} {case.preset}".replace("gproximity", "gProximity")
+    """The name of a case's method, such as "paper's schedule"."""
+    return known_names.method(case.algorithm, case.preset)
 
 
 def _is_of(key, scene):

@@ -20,7 +20,7 @@ STYLE = """tr.ours { font-weight: 600; }
 """
 METHODS = (
     "Milliseconds per frame; the fastest of a row is bold. In parentheses, with its 95 % interval, gProximity's time over that of the method: "
-    "above 1, the method is faster. The paper's schedule lets each work-item walk its own seeds; ours, grouped, has the same chunks, and "
+    "above 1, the method is faster. The paper's schedule lets each work-item walk its own seeds; the grouped schedule has the same chunks, and "
     "a work-group shares its walks."
 )
 METHODS_TITLE = "Four methods, everything on the device"

@@ -7,16 +7,16 @@ import pathlib
 from ..errors import BadUse
 from ..files import replace_whole
 from ..pages.frame import Page, Section, html_of, own_script
-from ..pages.markup import Html
+from ..names import scene
+from ..pages.markup import Html, element
 
 FOLDER = pathlib.Path(__file__).parent / "page"
 SYSTEM = "/usr/share/javascript"
 # Files of libraries, and their Debian packages.
 CHARTS = {"chart.js/chart.min.js": "libjs-chart.js"}
 SCENES = {"three/three.min.js": "libjs-three", "three/examples/js/controls/OrbitControls.js": "libjs-three"}
-CHART_SCRIPTS = ("axes.js", "charts.js", "figures.js", "stages.js", "errors.js", "kernels.js")
+CHART_SCRIPTS = ("axes.js", "charts.js", "overview.js", "figures.js", "stages.js", "errors.js", "kernels.js")
 SCENE_SCRIPTS = ("scale.js", "contacts.js", "surfaces.js", "scene.js", "scene_controls.js")
-SCENE = Section("view", "The scene", is_hidden=True)
 
 
 def folders(program):
@@ -49,6 +49,12 @@ def open_page(title, has_charts, has_scene, program, command):
     own = lambda name: (FOLDER / name).read_text(encoding="utf-8")
     texts += map(own, CHART_SCRIPTS * has_charts + SCENE_SCRIPTS * has_scene + ("begin.js",))
     return Page(title, footer=Html(own("licences.html")), scripts=texts, style=own("report.css"))
+
+
+def scene_section(key):
+    """The part with the scene of this key, which scripts draw."""
+    content = element("p", key, class_="quiet")
+    return Section("view", f"The scene: {scene(key)}", content, [("view", "The scene")], is_hidden=True)
 
 
 def write_page(path, page):

@@ -5,28 +5,35 @@ lines.FIELD_ERRORS for a record that lacks fields of its schema."""
 import os
 
 from ..fields import at, needed
-from ..pages.markup import element
+from ..pages.markup import breakable, element
 from ..pages.tables import Column, Row, number_text
 from ..text_lines import one_line
 from .conditions import conditions_text, sampling_text
 from .leads import ONE_ROUND
 from .numbers import is_number, rounded
+from .sentences import method_of
 
 MAX_FRAMES, MAX_LETTERS = 512, 2000
 CONTACT_ERRORS = ("depth_relative", "normal_degrees", "point", "hausdorff", "volume_relative")
 COLUMNS = (
     Column("cell", style="name"),
-    Column("ms a frame", True),
+    Column("ms per frame", True),
     Column("95 %", True),
     Column("status", has_choice=True),
-    Column("algorithm", has_choice=True),
+    Column("method", has_choice=True),
     Column("k", True),
     Column("scene", style="wraps", has_choice=True),
     Column("frames", style="whole"),
     Column("device", style="wraps", has_choice=True),
     *(Column(name, True) for name in ("launches", "waits", "candidate pairs", "contacts")),
 )
-SEARCHED = ("preset", "failure", "settings", "commit")  # details with words that the table's filter finds
+SEARCHED = (
+    "algorithm",
+    "failure",
+    "settings",
+    "scene",
+    "commit",
+)  # details with words that the table's filter finds
 
 
 def _device(cell):
@@ -82,9 +89,8 @@ def charted(cell, label):
     names = [cell.described.get(name) for name in ("contact_rule", "decision", "rounding", "precision")]
     return made | {
         "error": error,
-        "where": f"{cell.scene}, on {_device(cell)}",
-        "preset": cell.preset,
-        "names": [cell.algorithm, k and f"k={k}", *names],
+        "where": f"{cell.names['scene']}, on {_device(cell)}",
+        "names": [method_of(cell), k and f"k={k}", *names],
     }
 
 
@@ -104,7 +110,7 @@ def time_text(cell):
     ends = f"[{low}, {high}]" if len(cell.rounds) > 1 else f"({ONE_ROUND})"
     samples, rounds = f"{cell.samples} sample", f"{len(cell.rounds)} round"
     return (
-        f"{number_text(time[0])} ms a frame {ends}, {samples}{'s' * (cell.samples != 1)} in "
+        f"{number_text(time[0])} ms per frame {ends}, {samples}{'s' * (cell.samples != 1)} in "
         f"{rounds}{'s' * (len(cell.rounds) != 1)}"
     )
 
@@ -123,18 +129,18 @@ def details(cell, against):
     rounds = ", ".join(number_text(ns / cell.frames / 1e6) for ns in cell.times())
     errors = (_error(cell) or {}).items()
     facts = {
-        "preset": cell.preset,
+        "algorithm": f"{cell.algorithm} {cell.preset}",
         "driver": cell.names["driver"],
         "failure": shown_text(cell.failure),
         "time": time_text(cell),
         "comparison": against,
         "conditions": conditions_text(cell.record),
         "sampling": sampling_text(cell.record),
-        "rounds": rounds and f"{rounds} ms a frame",
+        "rounds": rounds and f"{rounds} ms per frame",
         "stages": _stages_text(cell),
         "settings": " ".join(f"{name}={value}" for name, value in sorted(cell.described.items())),
         "errors": ", ".join(f"{name.replace('_', ' ')} {number_text(value)}" for name, value in errors),
-        "scene": f"{number_text(cell.bodies)} bodies, {number_text(cell.tetrahedra)} tetrahedra",
+        "scene": f"{cell.scene}: {number_text(cell.bodies)} bodies, {number_text(cell.tetrahedra)} tetrahedra",
         "commit": commit(cell),
         "date": shown_text(cell.date),
         "command": shown_text(cell.record.get("command")),
@@ -161,9 +167,9 @@ def row(cell, label, against=None):
             time and time[0],
             _half_interval(cell, time),
             status if cell.status == "ok" else element("span", status, class_="bad"),
-            cell.algorithm,
+            method_of(cell),
             cell.described.get("k"),
-            cell.scene,
+            element("span", breakable(cell.names["scene"]), title=cell.scene),
             f"{cell.first_frame}:{cell.last_frame}",
             _device(cell),
             *map(number_text, (cell.of_stages("launches"), cell.of_stages("waits"), *pairs)),

@@ -5,13 +5,15 @@ import dataclasses
 import json
 
 from ..kinds import fields_of
+from ..pages.frame import Section
 from ..pages.markup import markup
-from . import parts
+from . import overview, parts
+from .answers import answers
 from .cells import charted, row
-from .groups import groups_of
-from .leads import title, which_text
+from .conditions import conditions
+from .groups import groups_of, is_rankable
 from .numbers import ratio_row
-from .sentences import group_sentences, named_cells, summary_sentences
+from .sentences import cautions, finding, group_sentences, stage_text, summary_sentences
 from .sweeps import sweeps_of
 
 
@@ -40,18 +42,11 @@ def size_of(text):
 
 
 def _group(group, cells):
-    named = named_cells(group, cells)
     ranked = [
         [one.cell, *ratio_row(one.ratio), one.is_told_apart if one.has_interval else None]
         for one in group.ranked
     ]
-    which = "" if group.answers_differ else which_text(named)
-    return {
-        "title": group.title,
-        "ranked": ranked,
-        "lead": title(named, group.answers_differ),
-        "which": which,
-    }
+    return {"title": group.title, "row": group.row, "ranked": ranked, "stages": stage_text(group, cells)}
 
 
 def _history(cells):
@@ -64,28 +59,44 @@ def _history(cells):
     return shown_history(cells)
 
 
+def _order(groups, cells):
+    """Numbers of cells as tables have them: by group, the fastest first, those that are not ranked last."""
+    return [
+        number
+        for group in groups
+        for number in sorted(group.cells, key=lambda at: (not is_rankable(cells[at]), cells[at].ms() or 0))
+    ]
+
+
 def _made(records, differences):
     """PageData of all cells of the records."""
     cells, groups = records.cells, groups_of(records.cells, records.verdicts)
     against = {one["cell"]: one["against"] for one in differences["cells"]} if differences else {}
     labels = {number: label for group in groups for number, label in zip(group.cells, group.labels)}
-    rows, charted_cells = [], []
+    shown, charted_cells = [], []
     for number, cell in enumerate(cells):
         with fields_of("cell", cell.location):
-            label = labels[number] or cell.algorithm
-            rows.append(row(cell, label, against.get(number)))
+            label = labels[number]
+            shown.append(row(cell, label, against.get(number)))
             charted_cells.append(charted(cell, label))
+    rows = overview.rows_of(groups, cells)
+    groups = overview.in_order(groups, rows)
     history, moves = _history(cells)
-    words = [*summary_sentences(groups, cells), *moves]
-    sentences = [group_sentences(group, cells) for group in groups]
+    methods = overview.methods_of(rows)
     sections = [
-        parts.summary(groups, sentences, words, records.notes, differences),
-        parts.Section("charts", "Charts", is_hidden=True),
-        *([parts.cells(rows, {cell.algorithm for cell in cells})] if rows else []),
+        parts.results([*([differences["title"]] if differences else []), *moves], records.notes, bool(cells)),
+        *([answers(groups, cells), conditions(cells, cautions(cells))] if cells else []),
+        Section("charts", "Charts", is_hidden=True),
+        *(
+            [parts.tables(rows, methods, cells, [shown[number] for number in _order(groups, cells)])]
+            if cells
+            else []
+        ),
         *([parts.ceilings(records.ceilings)] if records.ceilings else []),
     ]
     data = {
         "cells": charted_cells,
+        "overview": overview.charted(rows, methods, finding(groups, cells) if cells else ""),
         "groups": [_group(group, cells) for group in groups],
         "sweeps": sweeps_of(cells, records.verdicts),
         "history": history,
@@ -93,8 +104,9 @@ def _made(records, differences):
         "profiles": records.profiles,
         "simulations": records.simulations,
     }
-    texts = [f"{group.title}: {sentence}" for group, sentence in zip(groups, sentences)]
-    return PageData(dumped(data), sections, len(cells), records.notes, [*texts, *words])
+    texts = [f"{group.title}: {group_sentences(group, cells)}" for group in groups]
+    sentences = [*texts, *summary_sentences(groups, cells), *moves] if cells else []
+    return PageData(dumped(data), sections, len(cells), records.notes, sentences)
 
 
 def data_of(records, max_bytes, differences=None):

@@ -10,12 +10,14 @@ from ..verdicts import verdict_of
 
 @dataclasses.dataclass
 class Group:
-    """Cells of one scene, frame range, devices, bounds and output. cells: their numbers, in order. labels:
-    the values in which they differ. ranked: verdicts.Ranked of correct cells without older records, the
-    fastest first. answers_differ: ranked cells have different answers, so that none is the fastest.
-    has_bad_cells: a cell failed or is wrong."""
+    """Cells of one scene, frame range, devices, bounds and output. title: all of these; row: the scene, and what
+    else distinguishes the groups; key: the scene's. cells: their numbers, in order. labels: the values in which they
+    differ. ranked: verdicts.Ranked of correct cells without older records, the fastest first. answers_differ: ranked
+    cells have different answers, so that none is the fastest. has_bad_cells: a cell failed or is wrong."""
 
     title: str
+    key: str = ""
+    row: str = ""
     cells: list = dataclasses.field(default_factory=list)
     labels: list = dataclasses.field(default_factory=list)
     ranked: list = dataclasses.field(default_factory=list)
@@ -26,6 +28,9 @@ class Group:
     def is_informative(self):
         """Whether it has a comparison or an error."""
         return len(self.ranked) > 1 or self.has_bad_cells
+
+    def label(self, number):
+        return self.labels[self.cells.index(number)]
 
 
 def _bounds(cell):
@@ -41,15 +46,11 @@ def _key(cell):
     )
 
 
-def _title(cell, scene):
+def _parts(cell, scene):
+    """What a cell's group is of: the scene first."""
     names = cell.names
-    parts = [
-        scene,
-        names["frames"],
-        *(f"{name} = {value}" for name, value in _bounds(cell).items() if value != BOUNDS[name]),
-    ]
-    parts += [names["handling"]] if names["handling"] else []
-    return f"{', '.join(parts)}, on {names['devices']} ({names['model']})"
+    bounds = (f"{name} = {value}" if value != BOUNDS[name] else "" for name, value in _bounds(cell).items())
+    return [scene, names["frames"], *bounds, names["handling"], f"on {names['devices']} ({names['model']})"]
 
 
 def is_rankable(cell):
@@ -66,16 +67,33 @@ def _rank(group, cells, recorded):
     group.ranked = [dataclasses.replace(one, cell=rankable[one.cell]) for one in verdict.cells]
 
 
+def _rows(parts):
+    """A text for each group, of its _parts and then of driver and digest: the scene, and those parts that distinguish it
+    from groups whose text so far is the same."""
+    scenes, *others = zip(*parts)
+    rows = list(scenes)
+    for texts in others:
+        known = {}
+        for row, text in zip(rows, texts):
+            known.setdefault(row, set()).add(text)
+        rows = [f"{row}, {text}" if text and len(known[row]) > 1 else row for row, text in zip(rows, texts)]
+    return rows
+
+
 def groups_of(cells, verdicts=None):
     """Groups of all cells, ranked by `verdicts`, the RecordedVerdicts of their files, where there are some. A
-    title has the name of the scene if it is unique, otherwise the key."""
-    groups, digests = {}, {}
+    scene has its name if that is unique, otherwise its key."""
+    groups, digests, parts = {}, {}, {}
     for cell in cells:
-        digests.setdefault(cell.scene_name, set()).add(cell.scene_digest)
+        digests.setdefault(cell.names["scene"], set()).add(cell.scene_digest)
     for number, cell in enumerate(cells):
-        scene = cell.scene_name if len(digests[cell.scene_name]) == 1 else cell.scene
-        groups.setdefault(_key(cell), Group(_title(cell, scene))).cells.append(number)
-    for group in groups.values():
+        name, key = cell.names["scene"], _key(cell)
+        own = _parts(cell, name if len(digests[name]) == 1 else cell.scene)
+        group = groups.setdefault(key, Group(", ".join(filter(None, own)), cell.scene))
+        group.cells.append(number)
+        parts.setdefault(key, [*own, cell.names["driver"], cell.names["digest"]])
+    for group, row in zip(groups.values(), _rows([*parts.values()]) if parts else []):
+        group.row = row
         _rank(group, cells, verdicts)
         group.labels = label([cells[number] for number in group.cells])[0]
     return list(groups.values())

@@ -5,6 +5,7 @@ a record that lacks fields of its schema."""
 import dataclasses
 import os
 
+from .. import names
 from ..fields import at, checked, needed
 from .conditions import conditions_text
 from .numbers import is_number, rounded
@@ -24,15 +25,15 @@ def _device_text(device):
 
 def _name(record):
     name = (
-        f"{needed(record, 'algorithm')} {needed(record, 'preset')} k = {record['settings'].get('k', '?')}, "
-        f"{needed(record, 'scene', 'key')}, on {_device_text(record['devices'][0])}"
+        f"{names.method(needed(record, 'algorithm'), needed(record, 'preset'))}, k = {record['settings'].get('k', '?')}, "
+        f"{names.scene(needed(record, 'scene', 'key'))}, on {_device_text(record['devices'][0])}"
     )
     return name if record["status"] == "ok" else f"{needed(record, 'status')}: {name}"
 
 
-def _numbers(part, names):
-    """{name: its number with six digits, or None}"""
-    return {name: rounded(part[name]) if is_number(part.get(name)) else None for name in names}
+def _numbers(part, fields):
+    """{field: its number with six digits, or None}"""
+    return {field: rounded(part[field]) if is_number(part.get(field)) else None for field in fields}
 
 
 def _kernel(kernel):
@@ -124,7 +125,7 @@ class Simulations:
         if line["kind"] == "step":
             run.add(_step(line))
             return
-        run.name = f"{needed(line, 'scene', 'key')}, contacts by {_name(line)}"
+        run.name = f"{names.scene(needed(line, 'scene', 'key'))}, contacts by {_name(line)}"
         run.status = needed(line, "status") or "not ended"
         if isinstance(line.get("failure"), str):
             run.failure = line["failure"]

@@ -1,41 +1,29 @@
 # SPDX-License-Identifier: MIT
-"""The parts of the page that need no scripts: summary, table of cells, ceilings."""
+"""The parts of the page that need no scripts: the place of the first charts, and the tables."""
 
 from ..pages.frame import Section
-from ..pages.markup import element, items, paragraphs
+from ..pages.markup import element, paragraphs
 from ..pages.tables import table
 from .cells import COLUMNS
 from .methods import drawings_of
+from .overview import times
 
-SHOWN_GROUPS = 10  # of the summary; readers open the others
-HOW = (
-    "Comparisons are between cells of one scene, frame range, devices, bounds and output. Brackets are 95 % intervals, each of one "
-    "comparison. Two cells are not told apart if the interval of their ratio contains 1."
-)
 CELLS = "A heading sorts; a cell's name shows its settings, conditions and command."
+NO_CELLS = "There are no cells in these files."
 
 
-def summary(groups, sentences, words, notes, differences):
-    """`sentences`: those on each group; `words`: those on all together. Groups with a comparison or an error
-    come first."""
+def results(leads, notes, has_cells):
+    """The first part, whose charts scripts add. `leads`: sentences above them; `notes`: on what is left out."""
     shown = [element("p", f"Left out: {note}.", class_="bad") for note in notes]
-    if not groups:
-        return Section("summary", "Summary", [*shown, element("p", "There are no cells in these files.")])
-    leads = [differences["title"]] if differences else []
-    lines = sorted(zip(groups, sentences), key=lambda pair: not pair[0].is_informative)
-    lines = [[element("strong", f"{group.title}: "), sentence] for group, sentence in lines]
-    rest = lines[SHOWN_GROUPS:]
-    more = (
-        element("details", element("summary", f"{len(rest)} more comparisons"), items(rest)) if rest else None
-    )
-    shown += [*paragraphs([*leads, *words], "lead"), items(lines[:SHOWN_GROUPS]), more]
-    return Section("summary", "Summary", [*shown, element("p", HOW, class_="quiet")])
+    shown += paragraphs(leads, "lead") if has_cells else [element("p", NO_CELLS)]
+    return Section("results", "Results", shown)
 
 
-def cells(rows, algorithms):
-    """`rows`: of all cells; `algorithms`: names of theirs."""
-    shown = table("Every cell", COLUMNS, rows, heading=False, notes=[CELLS], sorts=True)
-    return Section("cells", "Every cell", [*drawings_of(algorithms), shown])
+def tables(rows, methods, cells, shown):
+    """`rows`, `methods`: from overview.py; `shown`: rows of all cells."""
+    every = table("Every cell", COLUMNS, shown, notes=[CELLS], anchor="every", sorts=True)
+    drawings = drawings_of({cell.algorithm for cell in cells})
+    return Section("cells", "Tables", [times(rows, methods, cells) if rows else None, drawings, every])
 
 
 def ceilings(devices):

@@ -9,7 +9,9 @@ import math
 from ..cell import BOUNDS
 from ..verdicts import verdict_of
 from .groups import is_rankable
-from .leads import Named, lead_sentence, title
+from .leads import Named, title
+from .numbers import digits
+from .sentences import method_of
 
 MAX_LINES = 8  # of a chart, the first ones
 MAX_SWEEPS = 100
@@ -18,11 +20,10 @@ MIN_POINTS = 3
 
 @dataclasses.dataclass
 class _Line:
-    """algorithm, preset, rest: what all its cells share; rest: settings without the swept one. points: number
-    of a cell by value."""
+    """method, rest: what all its cells share; rest: settings without the swept one. points: number of a cell by
+    value."""
 
-    algorithm: str
-    preset: str
+    method: str
     rest: dict
     points: dict = dataclasses.field(default_factory=dict)
 
@@ -54,7 +55,7 @@ def _is_of_scene(setting, cell):
 def _of(setting, cell):
     """What a chart is of: cells of one scene with equal pairs, as far as the setting does not change them."""
     names, bounds = cell.names, {} if setting in BOUNDS else cell.described
-    parts = [cell.scene_name if _is_of_scene(setting, cell) else cell.scene, names["frames"]]
+    parts = [cell.scene_name if _is_of_scene(setting, cell) else names["scene"], names["frames"]]
     parts += [
         f"{name} = {bounds[name]}" for name, usual in BOUNDS.items() if bounds.get(name, usual) != usual
     ]
@@ -69,9 +70,9 @@ def _lines(setting, cells, numbers):
         cell = cells[number]
         if setting in cell.described:
             rest = {name: value for name, value in cell.described.items() if name != setting}
-            names = [cell.names[name] for name in ("algorithm", "preset", "driver", "handling")]
+            names = [method_of(cell), cell.names["driver"], cell.names["handling"]]
             line = lines.setdefault(
-                (_of(setting, cell), *names, *sorted(rest.items())), _Line(*names[:2], rest)
+                (_of(setting, cell), *names, *sorted(rest.items())), _Line(names[0], rest)
             )
             line.points[_value(cell.described[setting])] = number
     for (of, *_), line in lines.items():
@@ -81,32 +82,37 @@ def _lines(setting, cells, numbers):
 
 
 def _line_names(lines):
-    """Algorithm, preset and those settings in which lines of the same algorithm differ."""
+    """The method, and those settings in which lines of the same method differ."""
     for line in lines:
-        alike = [other for other in lines if other.algorithm == line.algorithm]
+        alike = [other for other in lines if other.method == line.method]
         differing = [
             f"{name}={value}"
             for name, value in sorted(line.rest.items())
             if any(other.rest.get(name) != value for other in alike)
         ]
-        preset = [line.preset] if any(other.preset != line.preset for other in lines) else []
-        yield " ".join([line.algorithm, *preset, *differing])
+        yield " ".join([line.method, *differing])
 
 
-def _words(setting, points, cells, recorded, has_lines):
-    """The title and the sentence of a chart of [name, value, number of a cell] rows. Settings of BOUNDS change the
+def _growth(setting, points, cells):
+    """The times of the first and the last value of a line, whose values may be scenes of their own."""
+    (name, first, fewer), *_, (_, last, more) = points
+    ms = [digits(cells[number].median_ms) for number in (fewer, more)]
+    return f"{name}: {ms[0]} ms per frame with {setting} = {first:.10g}, {ms[1]} with {last:.10g}"
+
+
+def _title(setting, points, cells, recorded, has_lines):
+    """The title of a chart of [name, value, number of a cell] rows. Settings of BOUNDS change the
     pairs: other answers are expected then."""
     own = [cells[number] for *_, number in points]
     if _is_of_scene(setting, own[0]):
-        return f"Times over {setting}: each value is a scene of its own", ""
+        return _growth(setting, [point for point in points if point[0] == points[0][0]], cells)
     try:
         verdict = verdict_of(own, recorded, setting not in BOUNDS)
-    except ModuleNotFoundError:  # scipy, which only the sentence needs
-        return f"Times over {setting}", ""
+    except ModuleNotFoundError:  # scipy, which only the verdict needs
+        return _growth(setting, points, cells)
     texts = [f"{setting} = {value:.10g}{f' of {name}' if has_lines else ''}" for name, value, _ in points]
     named = [Named(one, texts[one.cell], own[one.cell].median_ms) for one in verdict.cells]
-    sentence = "" if verdict.answers_differ else lead_sentence(named, " cells")
-    return title(named, verdict.answers_differ), sentence
+    return title(named, verdict.answers_differ)
 
 
 def _sweep(setting, of, lines, cells, recorded):
@@ -116,8 +122,8 @@ def _sweep(setting, of, lines, cells, recorded):
         for name, line in zip(_line_names(shown), shown)
     ]
     points = [(line["name"], *point) for line in own for point in line["points"]]
-    heading, words = _words(setting, points, cells, recorded, len(own) > 1)
-    return {"setting": setting, "of": of, "all": len(lines), "title": heading, "words": words, "lines": own}
+    heading = _title(setting, points, cells, recorded, len(own) > 1)
+    return {"setting": setting, "of": of, "all": len(lines), "title": heading, "lines": own}
 
 
 def sweeps_of(cells, recorded=None):

@@ -42,15 +42,15 @@ tandem.logScale = (text, values, own) => {
     ticks: {autoSkip: false, maxRotation: 45, callback: (_, i) => ticks[i].text}}};
 };
 
-/** An axis of numbers, with ticks of the chart's library; logarithmic if values differ by a factor above ten and none is 0. */
+/** An axis of numbers, with ticks of the chart's library; logarithmic if `more` has this type, or if values differ by a factor above ten and none is 0. */
 tandem.axis = (text, values, more) => {
   const known = values.filter(value => value !== null && value !== undefined);
   const least = Math.min(...known);
   const most = Math.max(...known);
   const title = {display: true, text};
-  if (!(least > 0 && most / least > 10)) return {type: "linear", beginAtZero: true, title, ticks: {maxRotation: 45, callback: value => tandem.number(value)}, ...more};
+  if (!(least > 0 && most / least > 10) && more?.type !== "logarithmic") return {type: "linear", beginAtZero: true, title, ticks: {maxRotation: 45, callback: value => tandem.number(value)}, ...more};
   // Ticks at powers of ten, and also at their doubles and quintuples if there are few: more would overlap.
-  const shown = most / least > 1000 ? [1] : [1, 2, 5];
-  return {type: "logarithmic", title: {display: true, text: text + ", logarithmic"}, ticks: {maxRotation: 45, autoSkip: true,
-    callback: value => shown.includes(+value.toExponential(3).split("e")[0]) ? tandem.number(value) : ""}, ...more};
+  const shown = most / least > 1000 ? [1] : most / least > 5 ? [1, 2, 5] : [1, 2, 3, 4, 5, 6, 7, 8, 9];
+  return {type: "logarithmic", title: {display: true, text: text + ", logarithmic"}, ticks: {maxRotation: 0, autoSkip: true, callback: value => tandem.number(value)},
+    afterBuildTicks: scale => { scale.ticks = scale.ticks.filter(({value}) => shown.includes(+value.toExponential(3).split("e")[0])); }, ...more};
 };

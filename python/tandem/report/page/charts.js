@@ -36,7 +36,32 @@ tandem.whiskers = {
   }
 };
 
-/** Draws names beside points where there is space: dataset.names has a text for each point. Names of earlier datasets come first. */
+/** Where the interval of a point begins and ends, if it lies on the axis of x. */
+tandem.endsAcross = (chart, dataset, j) => chart.options.indexAxis === "y" ? dataset.intervals?.[j]?.map(value => chart.scales.x.getPixelForValue(value)) : null;
+
+/** Crosses out points: dataset.crossed tells which. */
+tandem.crosses = {
+  id: "crosses",
+  afterDatasetsDraw(chart) {
+    const draw = chart.ctx;
+    draw.save();
+    draw.strokeStyle = tandem.ofStyle("--bad");
+    draw.lineWidth = 3;
+    chart.data.datasets.forEach((dataset, i) => {
+      if (!dataset.crossed || !chart.isDatasetVisible(i)) return;
+      chart.getDatasetMeta(i).data.forEach(({x, y}, j) => {
+        if (!dataset.crossed[j] || Number.isNaN(x)) return;
+        draw.beginPath();
+        for (const side of [-1, 1]) { draw.moveTo(x - 9, y - 9 * side); draw.lineTo(x + 9, y + 9 * side); }
+        draw.stroke();
+      });
+    });
+    draw.restore();
+  }
+};
+
+/** Draws names beside points where there is space, on the left first if dataset.namesLeft: dataset.names has a text for each point, or nothing.
+ * Names of earlier datasets come first. */
 tandem.pointNames = {
   id: "pointNames",
   afterDatasetsDraw(chart) {
@@ -46,7 +71,7 @@ tandem.pointNames = {
     const isFree = box => box[0] >= left && box[2] <= right && box[1] >= top && box[3] <= bottom &&
       !taken.some(other => box[0] < other[2] && other[0] < box[2] && box[1] < other[3] && other[1] < box[3]);
     const points = chart.data.datasets.flatMap((dataset, i) => dataset.names && chart.isDatasetVisible(i)
-      ? chart.getDatasetMeta(i).data.map((point, j) => ({x: point.x, y: point.y, name: dataset.names[j]})) : []);
+      ? chart.getDatasetMeta(i).data.map(({x, y}, j) => ({x, y, ends: tandem.endsAcross(chart, dataset, j) ?? [x, x], name: dataset.names[j], left: dataset.namesLeft})) : []);
     chart.namesDrawn = [];
     if (!points.length) return;
     draw.save();
@@ -54,9 +79,10 @@ tandem.pointNames = {
     draw.fillStyle = tandem.ofStyle("--text");
     draw.textBaseline = "middle";
     taken.push(...points.map(({x, y}) => [x - 4, y - 4, x + 4, y + 4]));
-    for (const {x, y, name} of points) {
+    for (const {x, y, ends, name, left: isLeft} of points.filter(point => point.name)) {
       const width = draw.measureText(name).width;
-      const boxes = [[x + 9, y], [x - 9 - width, y], [x - width / 2, y - 16], [x - width / 2, y + 16]].map(([from, middle]) => [from, middle - 7, from + width, middle + 7]);
+      const sides = [[ends[1] + 9, y], [ends[0] - 9 - width, y]];
+      const boxes = [...isLeft ? sides.reverse() : sides, [x - width / 2, y - 16], [x - width / 2, y + 16]].map(([from, middle]) => [from, middle - 7, from + width, middle + 7]);
       const box = boxes.find(isFree);
       if (!box) continue;
       taken.push(box);
@@ -71,7 +97,7 @@ tandem.oneRound = "one round: no interval";
 tandem.brackets = (low, high) => low === null ? "-" : `[${tandem.number(low)}, ${tandem.number(high)}]`;
 /** The 95 % interval of a cell's time, and its time with the interval. */
 tandem.intervalText = ({ms, rounds}) => rounds > 1 ? tandem.brackets(ms[1], ms[2]) : tandem.oneRound;
-tandem.timeText = cell => `${tandem.number(cell.ms[0])} ms a frame ${cell.rounds > 1 ? tandem.intervalText(cell) : `(${tandem.oneRound})`}`;
+tandem.timeText = cell => `${tandem.number(cell.ms[0])} ms per frame ${cell.rounds > 1 ? tandem.intervalText(cell) : `(${tandem.oneRound})`}`;
 
 /** The text of a point under the pointer: dataset.texts has it where positions are not the values. */
 tandem.pointText = {title: items => items.some(item => item.dataset.texts) ? "" : items[0]?.label,
@@ -82,9 +108,9 @@ tandem.nameLength = () => innerWidth < 640 ? 22 : 38;
 tandem.shortened = (text, length) => text.length > length ? text.slice(0, length - 1) + "…" : text;
 
 tandem.Figure = class {
-  /** `choices`: list of {value, text}. `describe` returns {title, alt, type, data, options, table} for a value, and optionally height and notes: [{text, bad}]. */
-  constructor({id, label, choices, describe}) {
-    Object.assign(this, {id, label, choices, describe, value: choices[0].value});
+  /** `part`: the part of the page. `choices`: list of {value, text}. `describe` returns {title, alt, type, data, options, table} for a value, and optionally height and notes: [{text, bad}]. */
+  constructor({part = "charts", id, label = "", choices = [{value: 0, text: ""}], describe}) {
+    Object.assign(this, {part, id, label, choices, describe, value: choices[0].value});
   }
 
   show() {
@@ -98,7 +124,7 @@ tandem.Figure = class {
       tandem.choice(this.label, this.choices, value => { this.value = value; this.refresh(); })) : null;
     this.figure = element("figure", {id: this.id, "aria-labelledby": this.id + "-title"}, this.title, choice, this.notes, this.plot,
       element("details", {}, element("summary", {}, "The numbers of this chart"), this.table));
-    tandem.show("charts", this.figure);
+    tandem.show(this.part, this.figure);
     this.refresh();
     tandem.darkness.addEventListener("change", () => this.draw());
   }
@@ -125,7 +151,7 @@ tandem.Figure = class {
       Object.assign(dataset, {borderColor: dataset.borderColor ?? colour, backgroundColor: dataset.backgroundColor ?? colour, pointRadius: dataset.pointRadius ?? 5,
         pointStyle: dataset.pointStyle ?? tandem.markers[i % tandem.markers.length]});
     });
-    this.chart = new Chart(this.canvas, {type, data, plugins: [tandem.whiskers, tandem.pointNames],
+    this.chart = new Chart(this.canvas, {type, data, plugins: [tandem.whiskers, tandem.crosses, tandem.pointNames],
       options: {animation: false, maintainAspectRatio: false, ...options,
         plugins: {legend: {display: data.datasets.length > 1, position: "bottom", labels: {usePointStyle: true}}, tooltip: {callbacks: tandem.pointText}}}});
   }

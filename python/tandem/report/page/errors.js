@@ -31,13 +31,13 @@ tandem.errorFigure = data => {
     const dataset = (list, more) => ({data: list.map(cell => ({x: scale.place(cell.error[name]), y: cell.ms[0]})), names: list.map(cell => names.get(cell)),
       intervals: list.map(cell => cell.rounds > 1 ? cell.ms.slice(1) : null),
       texts: list.map(cell => `${names.get(cell)}: error ${tandem.number(cell.error[name])}, ${tandem.timeText(cell)}`), ...more});
-    return {title: quickest === best ? `${names.get(best)} has both the lowest median time and the least error`
-        : `${names.get(best)} has the least error; its median time is ${tandem.number(best.ms[0] / quickest.ms[0])} times the lowest, that of ${names.get(quickest)}`,
-      alt: `${where}: milliseconds a frame over ${what}, of ${own.length} cells; ${unbeaten.length} are beaten by none in both. Errors of 0 have a tick of their own at the left.`,
+    return {title: quickest === best ? `${names.get(best)} is fastest and has the least error`
+        : `${names.get(best)} has the least error, and takes ${(best.ms[0] / quickest.ms[0]).toPrecision(3)} times as long as ${names.get(quickest)}`,
+      alt: `${where}: milliseconds per frame over ${what}, of ${own.length} cells; ${unbeaten.length} are beaten by none in both. Errors of 0 have a tick of their own at the left.`,
       type: "scatter", height: 420,
       data: {datasets: [dataset(unbeaten, {label: "beaten by none in both", colour: 4, pointStyle: "rectRot", pointRadius: 7}), dataset(others, {label: "others", colour: 6, pointRadius: 4})]},
-      options: {scales: {x: scale.axis, y: tandem.axis("ms a frame", own.map(cell => cell.ms[0]))}},
-      table: [where, ["cell", "preset", what, "ms a frame", "95 %", "beaten by none"], [...unbeaten, ...others].slice(0, 300).map(cell =>
-        [names.get(cell), cell.preset, cell.error[name], cell.ms[0], tandem.intervalText(cell), unbeaten.includes(cell) ? "yes" : "no"])]};
+      options: {scales: {x: scale.axis, y: tandem.axis("ms per frame", own.map(cell => cell.ms[0]))}},
+      table: [where, ["cell", what, "ms per frame", "95 %", "beaten by none"], [...unbeaten, ...others].slice(0, 300).map(cell =>
+        [names.get(cell), cell.error[name], cell.ms[0], tandem.intervalText(cell), unbeaten.includes(cell) ? "yes" : "no"])]};
   }});
 };

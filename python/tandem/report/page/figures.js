@@ -3,26 +3,6 @@
 "use strict";
 
 tandem.groupChoices = groups => groups.map(group => ({value: group.number, text: group.title}));
-tandem.maxBars = 30;
-
-/** Medians of cells with intervals, the fastest on top. */
-tandem.mediansFigure = data => {
-  const groups = data.groups.filter(group => group.ranked.length > 1);
-  return groups.length && new tandem.Figure({id: "medians", label: "comparison", choices: tandem.groupChoices(groups), describe: number => {
-    const group = data.groups[number];
-    const cells = group.cells.slice(0, tandem.maxBars);
-    const left = group.ranked.length - cells.length;
-    return {title: group.lead,
-      alt: `${group.title}: milliseconds a frame of ${cells.length} cells.` + (left ? ` ${left} slower ones are in the table of every cell.` : ""),
-      type: "line", height: 110 + 26 * cells.length,
-      data: {labels: cells.map(cell => tandem.shortened(cell.label, tandem.nameLength())), datasets: [{label: "ms a frame", data: cells.map(cell => cell.ms[0]), showLine: false,
-        intervals: cells.map(cell => cell.rounds > 1 ? cell.ms.slice(1) : null), colour: 1, texts: cells.map(tandem.timeText)}]},
-      options: {indexAxis: "y", scales: {x: tandem.axis("milliseconds a frame, 95 % intervals", cells.flatMap(cell => cell.ms)), y: {offset: true, ticks: {autoSkip: false}}}},
-      table: [group.title, ["cell", "ms a frame", "95 %", "times the first", "95 % of this ratio", "told apart"], group.ranked.slice(0, 200).map(([, ratio, low, high, apart], i) =>
-        [group.cells[i].label, group.cells[i].ms[0], tandem.intervalText(group.cells[i]), ratio, i === 0 ? "" : apart === null ? tandem.oneRound : tandem.brackets(low, high),
-          i === 0 ? "" : apart === null ? "" : apart ? "yes" : "no"])]};
-  }});
-};
 
 /** Times of each frame. */
 tandem.curvesFigure = data => {
@@ -33,9 +13,10 @@ tandem.curvesFigure = data => {
     const {first, curve} = cells[0];
     const worst = curve.indexOf(Math.max(...curve));
     const all = cells.flatMap(cell => cell.curve);
-    return {title: `The slowest frame of ${tandem.shortened(cells[0].label, 60)} is frame ${first + worst}, with ${tandem.number(curve[worst])} ms`,
+    const colours = tandem.methodColours(data, cells);
+    return {title: `${tandem.shortened(cells[0].label, 60)} takes ${tandem.number(Math.min(...curve))} to ${tandem.number(curve[worst])} ms, most in frame ${first + worst}`,
       alt: `${group.title}: milliseconds of each frame, the median of the replays, of ${cells.length} cells.`, type: "line",
-      data: {labels: curve.map((_, i) => first + i), datasets: cells.map(cell => ({label: tandem.shortened(cell.label, 60), data: cell.curve,
+      data: {labels: curve.map((_, i) => first + i), datasets: cells.map((cell, i) => ({label: tandem.shortened(cell.label, 60), data: cell.curve, ...colours[i],
         pointRadius: curve.length > 60 ? 0 : 3, borderWidth: 2}))},
       options: {scales: {x: {title: {display: true, text: "frame"}}, y: tandem.axis("ms", all)}},
       table: [group.title, ["frame", ...cells.map(cell => cell.label)], curve.map((_, i) => [String(first + i), ...cells.map(cell => cell.curve[i])])]};
@@ -60,7 +41,7 @@ tandem.simulationsFigure = data => {
 };
 
 /** Ratios of new to old records, as of tandem compare. */
-tandem.differencesFigure = differences => differences && new tandem.Figure({id: "differences", label: "", choices: [{value: 0, text: ""}], describe: () => {
+tandem.differencesFigure = differences => differences && new tandem.Figure({id: "differences", describe: () => {
   const timed = differences.cells.filter(cell => cell.ratio).sort((a, b) => Math.abs(Math.log(b.ratio[0])) - Math.abs(Math.log(a.ratio[0])));
   const shown = timed.slice(0, 40).sort((a, b) => b.ratio[0] - a.ratio[0]);
   const limits = shown.flatMap(cell => cell.ratio).filter(value => value !== null);
@@ -73,7 +54,7 @@ tandem.differencesFigure = differences => differences && new tandem.Figure({id: 
     options: {indexAxis: "y", scales: {x: {title: {display: true, text: "new time over old time, 95 % intervals; above 1 is slower"}, suggestedMin: Math.min(0.95, ...limits), suggestedMax: Math.max(1.05, ...limits),
       grid: {lineWidth: mark => mark.tick && mark.tick.value === 1 ? 3 : 1, color: mark => tandem.ofStyle(mark.tick && mark.tick.value === 1 ? "--text" : "--grid")}},
       y: {offset: true, ticks: {autoSkip: false}}}},
-    table: [[differences.common, ...differences.notes].join("; "), ["cell", "old ms a frame", "new ms a frame", "new/old", "95 %", "p (Holm)", "verdict"],
+    table: [[differences.common, ...differences.notes].join("; "), ["cell", "old ms per frame", "new ms per frame", "new/old", "95 %", "p (Holm)", "verdict"],
       differences.cells.map(cell => [cell.label, cell.old, cell.new, ...(cell.ratio ? [cell.ratio[0], tandem.brackets(cell.ratio[1], cell.ratio[2])] : ["", ""]), cell.p, cell.verdict])]};
 }});
 
@@ -81,38 +62,38 @@ tandem.differencesFigure = differences => differences && new tandem.Figure({id: 
 tandem.historyFigure = data => data.history && new tandem.Figure({id: "history", label: "cell", choices: data.history.cells.map((cell, value) => ({value, text: cell.label})), describe: number => {
   const {programs, cells, left_out} = data.history;
   const {title, label, points} = cells[number];
-  const texts = points.map(([program, ms, , , ratio, moved, verdict]) => `${programs[program]}: ${tandem.number(ms)} ms a frame` + (ratio ? `, ${tandem.number(ratio[0])} times the level before${(ratio[1] === null ? "" : " " + tandem.brackets(ratio[1], ratio[2]))}: ${verdict}` : verdict && `, ${verdict}`));
+  const texts = points.map(([program, ms, , , ratio, moved, verdict]) => `${programs[program]}: ${tandem.number(ms)} ms per frame` + (ratio ? `, ${tandem.number(ratio[0])} times the level before${(ratio[1] === null ? "" : " " + tandem.brackets(ratio[1], ratio[2]))}: ${verdict}` : verdict && `, ${verdict}`));
   const at = isMoved => programs.map((_, program) => points.find(point => point[0] === program && (!isMoved || point[5]))?.[1] ?? null);
   const ofProgram = programs.map((_, program) => texts[points.findIndex(point => point[0] === program)]);
-  return {title, alt: `${label}: milliseconds a frame over ${programs.length} commits.`, type: "line",
+  return {title, alt: `${label}: milliseconds per frame over ${programs.length} commits.`, type: "line",
     notes: [{text: "A commit moved if 'tandem compare' finds it slower, faster or with another answer than the first commit of the level before. Sessions of a commit are pooled." +
       (left_out ? ` ${left_out} cells are left out.` : "")}],
     data: {labels: programs, datasets: [{label: "moved", data: at(true), showLine: false, colour: 4, pointStyle: "rectRot", pointRadius: 9, texts: ofProgram},
-      {label: "ms a frame", data: at(false), spanGaps: true, colour: 1, borderWidth: 2, texts: ofProgram}]},
-    options: {scales: {x: {title: {display: true, text: "commit, the oldest first"}}, y: {...tandem.axis("ms a frame", points.map(point => point[1])), beginAtZero: true}}},
-    table: [label, ["commit", "ms a frame", "rounds", "sessions", "times the level before", "95 %", "verdict"], points.map(([program, ms, rounds, sessions, ratio, , verdict]) =>
+      {label: "ms per frame", data: at(false), spanGaps: true, colour: 1, borderWidth: 2, texts: ofProgram}]},
+    options: {scales: {x: {title: {display: true, text: "commit, the oldest first"}}, y: {...tandem.axis("ms per frame", points.map(point => point[1])), beginAtZero: true}}},
+    table: [label, ["commit", "ms per frame", "rounds", "sessions", "times the level before", "95 %", "verdict"], points.map(([program, ms, rounds, sessions, ratio, , verdict]) =>
       [programs[program], ms, rounds, sessions, ratio ? ratio[0] : "", ratio ? tandem.brackets(ratio[1], ratio[2]) : "", verdict])]};
 }});
 
 /** Times over one numeric setting. */
 tandem.sweepsFigure = data => data.sweeps.length && new tandem.Figure({id: "sweeps", label: "setting and scene",
   choices: data.sweeps.map(({setting, of, all}, value) => ({value, text: `${setting}: ${of} (${tandem.count(all, "line", "lines")})`})), describe: number => {
-    const {setting, of, all, title, words, lines} = data.sweeps[number];
+    const {setting, of, all, title, lines} = data.sweeps[number];
     const points = lines.map(line => line.points.map(([value, index]) => [value, data.cells[index]]));
     const values = points.flat().map(point => point[0]);
     const isNegative = values.some(value => value < 0);
     const scale = isNegative ? {place: value => value, axis: tandem.axis(setting, values, {beginAtZero: false})} : tandem.logScale(setting, values, true);
-    return {title, alt: `${of}: milliseconds a frame over ${setting}, ${lines.length} of ${all} lines.`, notes: words ? [{text: words}] : [], type: "line",
+    return {title, alt: `${of}: milliseconds per frame over ${setting}, ${lines.length} of ${all} lines.`, type: "line",
       data: {datasets: lines.map((line, i) => ({label: tandem.shortened(line.name, 60), data: points[i].map(([value, cell]) => ({x: scale.place(value), y: cell.ms[0]})),
         intervals: points[i].map(([, cell]) => cell.rounds > 1 ? cell.ms.slice(1) : null),
         texts: points[i].map(([value, cell]) => `${line.name}, ${setting} = ${tandem.number(value)}: ${tandem.timeText(cell)}`)}))},
-      options: {scales: {x: {...scale.axis, type: "linear"}, y: tandem.axis("ms a frame", points.flat().map(([, cell]) => cell.ms[0]))}},
-      table: [of, ["line", setting, "ms a frame", "95 %"], lines.flatMap((line, i) => points[i].map(([value, cell]) => [line.name, value, cell.ms[0], tandem.intervalText(cell)]))]};
+      options: {scales: {x: {...scale.axis, type: "linear"}, y: tandem.axis("ms per frame", points.flat().map(([, cell]) => cell.ms[0]))}},
+      table: [of, ["line", setting, "ms per frame", "95 %"], lines.flatMap((line, i) => points[i].map(([value, cell]) => [line.name, value, cell.ms[0], tandem.intervalText(cell)]))]};
   }});
 
 tandem.charts = data => {
   data.groups.forEach((group, number) => Object.assign(group, {number, cells: group.ranked.map(entry => data.cells[entry[0]])}));
-  for (const figure of [tandem.differencesFigure(data.differences), tandem.historyFigure(data), tandem.mediansFigure(data), tandem.sweepsFigure(data), tandem.stagesFigure(data), tandem.curvesFigure(data),
-    tandem.errorFigure(data), tandem.rooflineFigure(data), tandem.simulationsFigure(data)])
+  for (const figure of [tandem.overviewFigure(data), tandem.stagesFigure(data), tandem.differencesFigure(data.differences), tandem.historyFigure(data), tandem.sweepsFigure(data),
+    tandem.curvesFigure(data), tandem.errorFigure(data), tandem.rooflineFigure(data), tandem.simulationsFigure(data)])
     if (figure) figure.show();
 };

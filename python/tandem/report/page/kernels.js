@@ -41,7 +41,7 @@ tandem.rooflineFigure = data => data.profiles.length && new tandem.Figure({id: "
         ...both.slice(0, 7).map((kernel, i) => ({label: tandem.kernelWords(kernel.entry), data: [{x: x.place(ofBytes(kernel)), y: y.place(kernel.operations_per_s)}], colour: i, pointRadius: 7,
           texts: [`${tandem.kernelWords(kernel.entry)}: ${tandem.number(kernel.operations_per_s)} comparisons a second, ${tandem.number(ofBytes(kernel))} per byte`]}))]},
       options: {scales: {x: x.axis, y: y.axis}},
-      table: [name, ["kernel", "entry", "stage", "ms a frame", "share", "bytes a second", "of their ceiling", "comparisons a second", "of their ceiling", "times its floor", "bound"],
+      table: [name, ["kernel", "entry", "stage", "ms per frame", "share", "bytes a second", "of their ceiling", "comparisons a second", "of their ceiling", "times its floor", "bound"],
         kernels.map(kernel => [tandem.kernelWords(kernel.entry), kernel.entry, kernel.stage, kernel.ms[0], tandem.percent(kernel.share), kernel.bytes_per_s, tandem.percent(kernel.of_bytes),
           kernel.operations_per_s, tandem.percent(kernel.of_operations), kernel.over_floor, kernel.bound ?? "not known"])]};
   }});

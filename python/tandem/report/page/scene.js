@@ -20,7 +20,7 @@ tandem.verticesOf = ({attributes: {position}}) => Array.from({length: position.c
 tandem.SceneView = class {
   /** `aspect`: width of the canvas over its height. */
   constructor(data, canvas, aspect) {
-    Object.assign(this, {data, frame: 0, colouring: "body"});
+    Object.assign(this, {data, colouring: "body"});
     this.renderer = new THREE.WebGLRenderer({canvas, antialias: true, preserveDrawingBuffer: true});
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.scene = new THREE.Scene();
@@ -35,7 +35,7 @@ tandem.SceneView = class {
     this.contacts = data.contacts ? new tandem.Contacts(data, this.scene) : null;
     if (data.surfaces) this.surfaces = new tandem.Surfaces(data, this.scene);
     this.showSurfaces(Boolean(data.surfaces));
-    this.show(0);
+    this.show(tandem.posterFrame(data));
     this.lookAtAll();
   }
 

@@ -11,15 +11,21 @@ tandem.sceneWords = (data, frame) => {
   return `Frame ${data.frames[frame]}${time}: ${bodies} of ${tandem.number(data.tetrahedra)} tetrahedra${contacts}${surfaces}.`;
 };
 
+/** The number of the frame that is shown first: that with the most contacts or polygons, or else the last. */
+tandem.posterFrame = data => {
+  const counted = data.contacts ?? data.surfaces;
+  const found = counted?.map(frame => frame.found);
+  return found ? found.indexOf(Math.max(...found)) : data.frames.length - 1;
+};
+
 tandem.view = data => {
   const {element} = tandem;
-  const facts = element("p", {class: "quiet"}, data.key);
   const notes = data.notes.map(note => element("p", {class: "quiet"}, "Reduced: " + note + "."));
   const canvas = element("canvas", {id: "scene-canvas", tabindex: "0", role: "img", "aria-label": "The scene; arrows turn it, plus and minus zoom, " +
     "Page Up and Page Down go through frames"});
   const stage = element("div", {class: "stage"}, canvas);
-  const words = element("p", {role: "status", "aria-live": "polite", id: "scene-words"}, tandem.sceneWords(data, 0));
-  tandem.show("view", facts, ...notes, stage, words, ...[tandem.depthLegend(data), tandem.pressureLegend(data)].filter(legend => legend));
+  const words = element("p", {role: "status", "aria-live": "polite", id: "scene-words"}, tandem.sceneWords(data, tandem.posterFrame(data)));
+  tandem.show("view", ...notes, stage, words, ...[tandem.depthLegend(data), tandem.pressureLegend(data)].filter(legend => legend));
   // The scene is made when it comes near the visible part of the page, so that a page with records loads faster.
   new IntersectionObserver((entries, observer) => {
     if (!entries.some(entry => entry.isIntersecting)) return;
@@ -70,7 +76,7 @@ tandem.Player = class {
     const {element} = tandem;
     const last = this.view.data.frames.length - 1;
     const button = (text, label, action) => element("button", {type: "button", "aria-label": label, title: label, onclick: action}, text);
-    this.slider = element("input", {type: "range", id: "frame-slider", min: 0, max: last, value: 0, oninput: () => this.go(+this.slider.value)});
+    this.slider = element("input", {type: "range", id: "frame-slider", min: 0, max: last, value: this.view.frame, oninput: () => this.go(+this.slider.value)});
     this.playButton = button("Play", "Play or pause", () => this.play());
     const colours = tandem.choice("colour", [["body", "bodies apart"], ["chunk", "chunks of 32 tetrahedra apart"], ["none", "none"]]
       .map(([value, text]) => ({value, text})), value => this.view.colour(value));

@@ -55,7 +55,7 @@ tandem.foldedStages = bars => {
 /** Times by stage of each cell: the device's time, or the host's for stages without device time. */
 tandem.stagesFigure = data => {
   const groups = data.groups.filter(group => group.cells.some(cell => Object.keys(cell.stages).length));
-  return groups.length && new tandem.Figure({id: "stages", label: "comparison", choices: tandem.groupChoices(groups), describe: number => {
+  return groups.length && new tandem.Figure({part: "results", id: "stages", label: "comparison", choices: tandem.groupChoices(groups), describe: number => {
     const group = data.groups[number];
     const cells = group.cells.slice(0, 20);
     const bars = cells.map(cell => cell.stages);
@@ -66,13 +66,13 @@ tandem.stagesFigure = data => {
     const datasets = shown.map(name => ({...colours(name), data: bars.map(bar => bar[name] ?? 0)}));
     if (folded.length) datasets.push({...colours(tandem.smallStages), data: bars.map(bar => folded.reduce((sum, name) => sum + (bar[name] ?? 0), 0))});
     const ordered = [...shown, ...folded];
-    return {title: all > 0 ? `The stage ${longest} takes ${Math.round(100 * bars[0][longest] / all)} % of the time of ${tandem.shortened(cells[0].label, 60)}${group.which}`
-        : `There are no times by stage of ${tandem.shortened(cells[0].label, 60)}`,
-      alt: `${group.title}: milliseconds a frame by stage, the device's time where a stage has any, otherwise the host's.`,
+    return {title: group.stages ? group.stages : all > 0 ? `Stage ${longest} takes ${Math.round(100 * bars[0][longest] / all)} % of the time of ${tandem.shortened(cells[0].label, 60)}`
+        : `${tandem.shortened(cells[0].label, 60)} has no times by stage`,
+      alt: `${group.title}: milliseconds per frame by stage, the device's time where a stage has any, otherwise the host's.`,
       notes: folded.length ? [{text: `Small stages, each below ${100 * tandem.smallShare} % of every bar: ${folded.join(", ")}.`}] : [],
       type: "bar", height: 150 + 26 * cells.length,
       data: {labels: cells.map(cell => tandem.shortened(cell.label, tandem.nameLength())), datasets},
-      options: {indexAxis: "y", scales: {x: {stacked: true, title: {display: true, text: "milliseconds a frame, with a clock around every command"}}, y: {stacked: true, ticks: {autoSkip: false}}}},
+      options: {indexAxis: "y", scales: {x: {stacked: true, title: {display: true, text: "ms per frame, every command timed"}}, y: {stacked: true, ticks: {autoSkip: false}}}},
       table: [group.title, ["cell", ...ordered], cells.map((cell, i) => [cell.label, ...ordered.map(name => bars[i][name] ?? 0)])]};
   }});
 };
