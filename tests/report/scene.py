@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-# test: cost=10
+# test: cost=10 full=20
 """The scene on a page of `tandem view` in Chromium fills its box, and leaves
 scrolling to the page."""
 
 import colorsys
 
-from tests.program import tandem
+from tests.program import LONG, tandem
 from tests.report.case import ReportCase
 
 CAMERA = "tandem.sceneView.camera.position.toArray().map(x => x.toFixed(4)).join()"
@@ -43,7 +43,7 @@ class Scenes(ReportCase):
             ("pile:bodies=60,frames=2", "--frames", "0"),
             ("pile:bodies=300,frames=1",),
         ):
-            for width, height in ((1400, 900), (390, 844)):
+            for width, height in ((1400, 900), (390, 844)) if LONG or scene[0] == "plates" else ((390, 844),):
                 self.view(scene, width, height)
                 _, left, right, bottom, top = zip(*self.browser.run(COLOURS).values())
                 extent = min(left), max(right), min(bottom), max(top)
