@@ -78,8 +78,10 @@ class Peers(ScriptCase):
         median = sorted(rows[0]["frame_ms"])[1]
         self.assertEqual(lines["one by one"][-6:-2], ["2.000", "-", "2.000", "4.000"])
         self.assertEqual(lines["refits"][-6:-2], ["2.000", "0.500", "2.000", "2.500"])
-        self.assertEqual(lines["tiled resident"][-2:], ["1.00", "equal"])
-        self.assertAlmostEqual(float(lines["refits"][-2]), 2.5 / median, delta=0.006)
+        fastest = min(median, 2.5)  # a busy machine may take longer than the peers say
+        for name, frame in (("tiled resident", median), ("refits", 2.5)):
+            self.assertAlmostEqual(float(lines[name][-2]), frame / fastest, delta=0.006)
+        self.assertEqual(lines["tiled resident"][-1], "equal")
 
     def test_all_walks_and_the_baselines_that_can_run(self):
         known = json.loads(tandem("algorithms", "--json")[1])
