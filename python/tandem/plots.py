@@ -61,6 +61,14 @@ def _figures(value):
     return f"{value:.3g}"
 
 
+def _scale_times(ax, name, times):
+    """Scales axis "x" or "y": from zero, or logarithmic where short times could not be told apart."""
+    if times.max() > 20 * times.min():
+        ax.set(**{f"{name}scale": "log"})
+    else:
+        ax.set(**{f"{name}lim": (0, None)})
+
+
 def plot_cells(records, ax=None):
     """Draws times of the cells of one scene, frame range and device, fastest first, with 95 % intervals. The
     title names the fastest cell and its lead, or the cells that are not told apart. Returns the axes. Raises
@@ -89,11 +97,9 @@ def plot_cells(records, ax=None):
     for tick, tie in zip(ax.get_yticklabels(), ties):
         tick.set_fontweight("bold" if tie else "normal")
     ax.invert_yaxis()
-    ax.set_xscale("log" if cells["ms"].iloc[-1] > 20 * cells["ms"].iloc[0] else "linear")
-    if ax.get_xscale() == "linear":
-        ax.set_xlim(left=0)
+    _scale_times(ax, "x", cells["ms"])
     ax.margins(x=0.12)
-    ax.set_xlabel("milliseconds a frame, median and 95 % interval", fontsize=8)
+    ax.set_xlabel("milliseconds per frame, median and 95 % interval", fontsize=8)
     first = _and(names[ties]) if ties.sum() < 4 else f"{ties.sum()} cells"
     if ties.sum() > 1:
         message = f"{first} are not told apart"
@@ -152,8 +158,8 @@ def plot_sweep(records, setting, ax=None):
     if not numbers:
         ax.set_xticks(range(positions.max() + 1), values.astype(str).unique())
     ax.set_xlabel(column.removeprefix("set_"), fontsize=8)
-    ax.set_ylabel("milliseconds a frame", fontsize=8)
-    ax.set_ylim(bottom=0)
+    ax.set_ylabel("milliseconds per frame", fontsize=8)
+    _scale_times(ax, "y", cells["ms"])
     if len(ax.lines) > 1:
         ax.legend(fontsize=7, frameon=False)
     ties = (
@@ -194,7 +200,7 @@ def plot_stages(records, ax=None):
         left = left + stages[name]
     ax.set_yticks(range(len(cells)), labels(cells, without=GROUP), fontsize=8)
     ax.invert_yaxis()
-    ax.set_xlabel("milliseconds a frame", fontsize=8)
+    ax.set_xlabel("milliseconds per frame", fontsize=8)
     ax.legend(
         fontsize=7, frameon=False, ncols=4, loc="upper left", bbox_to_anchor=(0, -0.12 - 1 / (1 + len(cells)))
     )
@@ -308,7 +314,7 @@ def plot_errors(records, error="depth_relative", which="median", ax=None):
     ax.set_xlabel(
         f"{ERRORS.get(error, error)}, {which}" if not error.endswith("_share") else ERRORS[error], fontsize=8
     )
-    ax.set_ylabel("milliseconds a frame", fontsize=8)
+    ax.set_ylabel("milliseconds per frame", fontsize=8)
     fastest, least = best["ms"].idxmin(), best["error"].idxmin()
     if fastest == least:
         message = f"{names[fastest]} is the fastest and has the least error"
