@@ -65,9 +65,11 @@ def table_code(row, names, function, own):
 
 def sources(kernels, own):
     out = ['#include "algorithms/kernels/sources.h"', "namespace tandem {", "namespace {"]
+    # With the suffix sv the compiler does not count two million characters one by one.
+    out.append("using namespace std::string_view_literals;")
     for index, kernel in enumerate(kernels):
         out.append(
-            f'constexpr KernelSource source_{index}{{"{kernel.name}",\nR"KERNEL({kernel.text})KERNEL"}};'
+            f'constexpr KernelSource source_{index}{{"{kernel.name}",\nR"KERNEL({kernel.text})KERNEL"sv}};'
         )
     names = [f"source_{index}" for index in range(len(kernels))]
     out += [

@@ -62,10 +62,14 @@ function(tandem_kernels target)
       list(APPEND geometries "AXES=${axes},K=${ends},PRECISION=${precision},PRESSURE_SLAB=${pressure_slab}")
     endforeach()
   endforeach()
-  # Several geometries per file: reading the headers takes as long as compiling one geometry.
+  # Several geometries per file: reading the headers takes as long as compiling one geometry. Few geometries are spread over
+  # the cores instead.
   list(LENGTH geometries count)
   set(generated ${out}/sources.cpp ${out}/host_table.cpp)
   set(each 4)
+  if(count LESS_EQUAL each)
+    set(each 1)
+  endif()
   math(EXPR last "(${count} - 1) / ${each}")
   # Kernels with lanes are compiled for several levels of x86-64. The host device uses the highest that the processor
   # supports. For other processors and with sanitizers they are compiled with the options of all other files.
@@ -94,6 +98,9 @@ function(tandem_kernels target)
   add_dependencies(${target} ${target}-arguments)
   # g++ 12 takes the undefined operands of AVX-512 intrinsics for uninitialised variables (GCC bug 105593).
   set(options -Wno-psabi -Wno-maybe-uninitialized -Wno-uninitialized -Wno-unused-function -Wno-unused-variable -Wno-unused-parameter -Wno-unknown-pragmas -Wno-type-limits)
+  if(TANDEM_QUICK_BUILD)
+    list(APPEND options -O3)
+  endif()
   if(TANDEM_SANITIZE)
     # With -fsanitize=bounds, g++ 12 reads uninitialised temporaries in certainty.clh: it reports them, and the decisions
     # differ from those of all other builds. Addresses are still checked.

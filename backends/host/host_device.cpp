@@ -5,6 +5,7 @@
 #include "base/fork_join.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <algorithm>
 #include <new>
 #include <optional>
@@ -261,16 +262,30 @@ const HostKernel* find_row(std::string_view source, std::string_view entry, std:
     return best;
 }
 
+/// The values of setting k that kernels are compiled for. With a slab of pressures, K counts two more.
+std::set<int> compiled_k() {
+    constexpr std::string_view name = "K=";
+    std::set<int> values;
+    for (const auto& variant : known_variants())
+        for (const auto& row : variant) {
+            const std::string_view defines = row.defines;
+            const auto at = defines.find(name);
+            if (at != std::string_view::npos && defines.find("PRESSURE_SLAB=1") == std::string_view::npos)
+                values.insert(std::stoi(std::string(defines.substr(at + name.size()))));
+        }
+    return values;
+}
+
 std::shared_ptr<Kernel::Impl> HostDevice::do_compile(const KernelSource& source, std::string_view entry,
                                                      const Defines& defines) {
     const auto [fixed, rest] = split(defines);
     const auto* row = find_row(source.name, entry, fixed, rest, level_);
     if (!row)
         throw DeviceError(fmt::format(
-            "host: kernel '{}' of {} is not compiled for {}; the host has values of setting k, in "
-            "PRECISION 32 and 64, and a program built by scripts/run has k=8 and 18 only (all: "
-            "scripts/build)",
-            entry, source.name, fixed));
+            "host: kernel '{}' of {} is not compiled for {}; this build has k = {}; build with an empty "
+            "TANDEM_HOST_K for every k: scripts/build, or pip install . "
+            "--config-settings=cmake.define.TANDEM_HOST_K=",
+            entry, source.name, fixed, fmt::join(compiled_k(), ", ")));
     auto impl = std::make_shared<HostKernelImpl>();
     impl->row = row;
     for (const auto& define : row->runtime) impl->runtime.emplace_back(define.set, define.initial);

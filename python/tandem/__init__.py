@@ -1,19 +1,66 @@
 # SPDX-License-Identifier: MIT
-"""tandem for Python: finds collisions of tetrahedral meshes on any device, and reads records of measurements
-as pandas frames.
+"""tandem for Python: collides tetrahedral meshes on any device, and reads records of measurements as pandas
+frames.
 
-    import tandem
+    collider = tandem.Collider(["a.msh", "b.msh"], device="host")
+    answer = collider.run([[0, 0, 0, 1, 0, 0, 0], [1, 0, 0, 1, 0, 0, 0]])  # of each body: tx ty tz qw qx qy qz
+    print(answer.meeting(), answer.contacts().depths)
 
-    collider = tandem.Collider(["a.msh", "b.msh"], algorithm="tiled", device="host", k=18)
-    pairs = collider.pairs([[0, 0, 0, 1, 0, 0, 0], [1, 0, 0, 1, 0, 0, 0]])  # (n, 4): body, tetrahedron, body, tetrahedron
+What to call for which task; help(tandem.Collider), for example, has the arguments, shapes and units:
 
-    records = tandem.read("run.jsonl")
-    records.cells[["algorithm", "set_k", "ms", "ms_low", "ms_high"]]
-    tandem.compare("old.jsonl", "new.jsonl")
-    tandem.plot_cells(records)
+Meshes and scenes
+    tandem.read_mesh            reads a mesh file
+    tandem.make_mesh            makes a mesh of arrays, which several colliders can share
+    tandem.make_scene           makes a scene of tandem by its name, or from a file
+    tandem.write_frames         writes frames of a simulation of yours as a scene, for `tandem run`
+    tandem.Mesh                 a mesh, and what was found in it, such as duplicates
+    tandem.Scene                meshes, and the poses and vertices of every frame
 
-Collisions need the compiled part of the package and numpy. Records need pandas, but no compiler and no
-device. Each module is loaded at its first use.
+Collisions
+    tandem.devices              lists the devices of this machine
+    tandem.algorithms           lists the names for algorithm=
+    tandem.Collider             bodies on a device, ready for any number of frames
+    tandem.Collider.run         collides a frame
+    tandem.Collider.update      collides a frame in which some bodies have moved
+    tandem.Collider.enqueue     collides a frame without waiting for the device
+    tandem.Collider.tune        selects the fastest algorithm on a frame of yours (algorithm="auto")
+    tandem.Trial                one candidate of tune(), with its time
+
+Answers of a frame
+    tandem.Answer               what run() and update() return
+    tandem.Answer.pairs         candidate pairs: tetrahedra whose bounds overlap
+    tandem.Answer.meeting       the pairs that do meet, by an exact decision
+    tandem.Answer.contacts      points, normals and depths
+    tandem.Answer.distances     distances and closest points (contact_rule="distance")
+    tandem.Answer.surfaces      contact surfaces of pressure fields (contact_rule="pressure")
+    tandem.Answer.wrenches      forces and torques of these surfaces (output="wrenches")
+    tandem.Answer.digest        a fingerprint of the pairs, equal on every device
+    tandem.Contacts             what contacts() returns
+    tandem.Distances            what distances() returns
+    tandem.Surfaces             what surfaces() returns
+    tandem.Wrenches             what wrenches() returns
+    tandem.Digest               what digest() returns
+    tandem.Queued               what enqueue() returns
+
+Records
+    tandem.read                 reads files of `tandem run`
+    tandem.Records              their tables: cells, samples, stages, kernels, frames and errors
+    tandem.Records.of           the records of some cells
+    tandem.Records.verdict      which cell is the fastest, and how sure that is
+    tandem.compare              compares two files: which cells have changed
+    tandem.Comparison           what compare() returns
+    tandem.plot_cells           draws the times of all cells of a scene
+    tandem.plot_stages          draws what a frame is made of
+    tandem.plot_frames          draws times, pairs or contacts over the frames
+    tandem.plot_sweep           draws times over the values of a setting
+    tandem.plot_errors          draws times over errors against the exact truth
+
+Errors
+    tandem.DeviceError          a device failed, or cannot do what was asked of it
+    tandem.OutOfMemory          the memory of a device is too small
+    tandem.RecordError          a file has no valid records
+
+Records need neither a compiler nor a device. All else needs the compiled part of the package.
 """
 
 import importlib
@@ -31,6 +78,7 @@ if TYPE_CHECKING:
     from .plots import plot_cells, plot_errors, plot_frames, plot_stages, plot_sweep
     from .records import Records, read
 
+# Each module is loaded at the first use of one of its names.
 _MODULES = {
     "_core": ("DeviceError", "Mesh", "OutOfMemory", "Scene", "algorithms", "devices"),
     "answers": ("Answer", "Contacts", "Digest", "Distances", "Queued", "Surfaces", "Wrenches"),

@@ -63,6 +63,14 @@ def _figures(value):
     return f"{value:.3g}"
 
 
+def _scale_times(ax, name, times):
+    """Scales axis "x" or "y": from zero, or logarithmic where short times could not be told apart."""
+    if times.max() > 20 * times.min():
+        ax.set(**{f"{name}scale": "log"})
+    else:
+        ax.set(**{f"{name}lim": (0, None)})
+
+
 def plot_cells(records, ax=None):
     """Draws times of the cells of one scene, frame range and device, fastest first, with 95 % intervals. The
     title names the fastest cell and its lead, or the cells that cannot be told apart. Returns the axes. Raises
@@ -91,9 +99,7 @@ def plot_cells(records, ax=None):
     for tick, tie in zip(ax.get_yticklabels(), ties):
         tick.set_fontweight("bold" if tie else "normal")
     ax.invert_yaxis()
-    ax.set_xscale("log" if cells["ms"].iloc[-1] > 20 * cells["ms"].iloc[0] else "linear")
-    if ax.get_xscale() == "linear":
-        ax.set_xlim(left=0)
+    _scale_times(ax, "x", cells["ms"])
     ax.margins(x=0.12)
     ax.set_xlabel("milliseconds per frame, median and 95 % interval", fontsize=8)
     named = [Named(*one) for one in zip(verdict.cells, names, cells["ms"])]
@@ -146,7 +152,7 @@ def plot_sweep(records, setting, ax=None):
         ax.set_xticks(range(positions.max() + 1), values.astype(str).unique())
     ax.set_xlabel(column.removeprefix("set_"), fontsize=8)
     ax.set_ylabel("milliseconds per frame", fontsize=8)
-    ax.set_ylim(bottom=0)
+    _scale_times(ax, "y", cells["ms"])
     if len(ax.lines) > 1:
         ax.legend(fontsize=7, frameon=False)
     ties = (

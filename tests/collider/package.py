@@ -5,16 +5,42 @@ import loads. Prints the cost of a call next to the program's frame."""
 
 import ast
 import json
+import operator
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
 import tempfile
+import textwrap
 import time
 
 from tests.collider.case import DEVICES, FOLDER, ColliderCase, tandem
 from tests.program import LONG, SOURCE, Case, ran
+
+
+class Map(ColliderCase):
+    """The text of help(tandem)."""
+
+    def test_names_everything_that_is_public_and_nothing_else(self):
+        rows = re.findall(r"(?m)^    tandem\.([\w.]+)  +\S", tandem.__doc__)
+        self.assertEqual(sorted(row for row in rows if "." not in row), tandem.__all__)
+        for row in rows:
+            self.assertTrue(operator.attrgetter(row)(tandem).__doc__, row)
+
+    def test_its_example_runs(self):
+        for file, name in zip(self.files, "ab"):
+            shutil.copy(file, self.work / f"{name}.msh")
+        example = textwrap.dedent(re.search(r"(?m)(^    .*\n)+", tandem.__doc__)[0])
+        self.assertEqual(len(example.splitlines()), 3)
+        done = ran(
+            [sys.executable, "-c", f"import tandem\n{example}"],
+            cwd=self.work,
+            env={**os.environ, "PYTHONPATH": FOLDER.name},
+        )
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertRegex(done.stdout, r"^\[\[ *0 ")
 
 
 class Example(ColliderCase):

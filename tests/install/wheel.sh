@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# wheel.sh: builds the wheel of the checkout with pip, for this processor only and without MPI and Embree. auditwheel puts GMP, oneTBB,
-# fmt, lz4 and liblzma into it and gives it a manylinux tag; OpenCL's loader stays the machine's own. The licences of all bundled
-# libraries are added. Then installs it in an empty virtual environment, where its Collider finds the pairs of two tetrahedra and
-# reports an unknown device. Needs PyPI, and Debian for the licences.
+# wheel.sh: builds the wheel of the checkout with pip, and prints the time. auditwheel puts GMP, oneTBB, fmt, lz4 and liblzma into it
+# and gives it a manylinux tag; OpenCL's loader stays the machine's own. The licences of all bundled libraries are added. Then
+# installs it in an empty virtual environment, where its Collider finds the pairs of two tetrahedra, and reports a k without host
+# kernels and an unknown device. Needs PyPI, and Debian for the licences.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 work=$(mktemp -d)
@@ -11,13 +11,11 @@ trap 'rm -rf "$work"' EXIT
 export PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_ROOT_USER_ACTION=ignore
 /usr/bin/python3 -m venv "$work/tools"
 "$work/tools/bin/pip" install --quiet -r tests/install/wheel-requirements.txt
-SECONDS=0
-PYTHONPATH=$PWD/.cache/python /usr/bin/python3 -m pip wheel --verbose --no-deps --no-build-isolation --wheel-dir "$work" \
-  --config-settings=cmake.define.TANDEM_LEVELS=native --config-settings=cmake.define.TANDEM_MPI=OFF \
-  --config-settings=cmake.define.CMAKE_DISABLE_FIND_PACKAGE_embree=ON --config-settings=build-dir=build/wheel . &>"$work/log" ||
+TIMEFORMAT="compiled in %0R s, with %0U + %0S s of processor time"
+time PYTHONPATH=$PWD/.cache/python /usr/bin/python3 -m pip wheel --verbose --no-deps --no-build-isolation --wheel-dir "$work" \
+  --config-settings=build-dir=build/wheel . &>"$work/log" ||
   { cat "$work/log" >&2; exit 1; }
 grep 'compiling the library takes about' "$work/log"
-echo "compiled in $SECONDS s"
 
 PATH=$work/tools/bin:$PATH "$work/tools/bin/auditwheel" repair --exclude libOpenCL.so.1 --wheel-dir "$work/repaired" "$work"/tandem_bvh-*.whl
 
@@ -52,6 +50,13 @@ collider = tandem.Collider([corner, corner])
 poses = [[0, 0, 0, 1, 0, 0, 0], [0.5, 0, 0, 1, 0, 0, 0]]
 assert collider.pairs(poses).tolist() == [[0, 0, 1, 0]]
 assert collider.meeting(poses).tolist() == [[0, 0, 1, 0]]
+assert tandem.Collider([corner, corner], precision="double").pairs(poses).tolist() == [[0, 0, 1, 0]]
+try:
+    tandem.Collider([corner, corner], k=8).run(poses)
+    raise SystemExit("k=8 was accepted")
+except tandem.DeviceError as error:
+    print(error)
+    assert "this build has k = 18;" in str(error) and "TANDEM_HOST_K" in str(error) and "\n" not in str(error)
 try:
     tandem.Collider([corner], device="cuda:99")
     raise SystemExit("device cuda:99 was accepted")

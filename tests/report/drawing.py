@@ -90,6 +90,9 @@ class Drawing(unittest.TestCase):
         best = records.cells.loc[records.cells["ms"].idxmin(), "set_seed_threshold"]
         self.assertIn(str(best), axes.get_title("left"))
         self.assertEqual(sum(len(line.get_xdata()) for line in axes.lines), len(records.cells))
+        self.assertEqual(axes.get_yscale(), "log", "some cells take 4,000 times as long as others")
+        published = records.cells["preset"] == "published"
+        self.assertEqual(tandem.plot_sweep(records.of(~published), "seed_threshold").get_yscale(), "linear")
 
     def test_errors_name_the_cells_that_none_beats(self):
         records = tandem.read(SOURCE / "tests/records/accuracy.jsonl")

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The Device contract, on every available device; PoCL is required.
+#include "backends/host/host_device.h"
 #include "tests/unit/backends/device_support.h"
 
 #include <gmock/gmock.h>
@@ -173,6 +174,14 @@ TEST(Device, NamesTheKernelThatDoesNotCompile) {
         EXPECT_THAT(message, testing::HasSubstr("refit.cl")) << device->info().id;
         EXPECT_EQ(message.find('\n'), std::string::npos);
     }
+}
+
+TEST(Device, HostNamesTheValuesOfKThatAreCompiled) {
+    const auto device = host::make_device();
+    const auto message = message_of([&] { unit_test::compile(*device, "refit_strips", {{"K", "10"}}); });
+    EXPECT_THAT(message,
+                testing::ContainsRegex("K=10;.* k = ([0-9]+, )*8, ([0-9]+, )*18[;,].*TANDEM_HOST_K"));
+    EXPECT_THAT(message, testing::Not(testing::HasSubstr("10,"))) << "it is only asked for";
 }
 
 } // namespace
