@@ -29,7 +29,7 @@ struct ChoosingOptions {
 void choose(Cell& cell, const Scene& scene, const FrameRange& range, const ChoosingOptions& options);
 
 /// Everything that a choice depends on. Devices: models, drivers, memory limits. Scene: numbers of bodies,
-/// tetrahedra and `pairs` (candidate pairs a frame) as powers of 4 rounded down (null: none), and whether
+/// tetrahedra and `pairs` (candidate pairs per frame) as powers of 4 rounded down (null: none), and whether
 /// bodies are deformable. Candidates: a digest of all, which includes the settings that the user fixed.
 nlohmann::ordered_json question_of(const Cell& cell, const Scene& scene, std::uint64_t pairs);
 

@@ -48,7 +48,7 @@ struct RunOptions { // NOLINT(clang-analyzer-optin.performance.Padding): in the 
     bool count = true;                      ///< replay once more with kernels that count their work
     TruthAmount truth = TruthAmount::pairs; ///< compare answers with the exact truth
     bool truth_is_given = false;            ///< whether `truth` is not the default
-    std::size_t truth_contacts = 0;         ///< exact contacts of at most this many pairs a frame; 0: all
+    std::size_t truth_contacts = 0;         ///< exact contacts of at most this many pairs per frame; 0: all
     MeshReading reading{};                  ///< how mesh files are read and meshes connected
     Degenerate degenerate = Degenerate::flat; ///< how flawed tetrahedra are handled
     std::size_t memory = 0;                   ///< memory limit of each device in bytes; 0: none

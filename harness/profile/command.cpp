@@ -133,7 +133,7 @@ void Profiling::print(const Cell& cell, const Measurement& m, const profile::Pro
     const auto frames = static_cast<double>(m.breakdowns.back().frame_ns.size());
     double device = 0;
     for (const auto& kernel : profile.kernels) device += kernel.ns.median;
-    put("\n{}\n{:.4g} us a frame; {:.4g} us in kernels when each is timed alone\n\n", describe(cell),
+    put("\n{}\n{:.4g} us per frame; {:.4g} us in kernels when each is timed alone\n\n", describe(cell),
         median_ns(m) * 1e-3 / frames, device * 1e-3);
     put_text(profile_table(profile, options_.all));
     put("answer: {}\n", a.frames == 0 ? "not checked" : (a.ok() ? "right" : "WRONG"));

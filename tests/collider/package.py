@@ -168,7 +168,7 @@ class Package(Case):
             )
             program = min(json.loads(out.read_text().splitlines()[0])["total_ns"]["samples"]) / len(frames)
             print(
-                f"\n  {name} on {device}, us a frame: {1e6 * whole:.0f} by Collider.run, of which {1e6 * (whole - within):.1f} are the call's; "
+                f"\n  {name} on {device}, us per frame: {1e6 * whole:.0f} by Collider.run, of which {1e6 * (whole - within):.1f} are the call's; "
                 f"{program * 1e-3:.0f} by tandem run",
                 end="",
                 file=sys.stderr,

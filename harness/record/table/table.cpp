@@ -22,7 +22,7 @@ double per_frame_ms(const Measurement& m, double ns) {
     return ns * 1e-6 / static_cast<double>(std::max<std::size_t>(1, m.candidate_pairs.size()));
 }
 
-/// The median over the instrumented replays, in milliseconds a frame.
+/// The median over the instrumented replays, in milliseconds per frame.
 template<class ValueOf>
 double replay_ms(const Measurement& m, const ValueOf& value_of) {
     std::vector<std::int64_t> values;

@@ -28,7 +28,7 @@ def _column(column, configurations):
     for panel, values, title, colour in (
         (column[0], [m / max(n, 1) for m, n, *_ in sums], "share of meeting pairs missed", "C0"),
         (column[1], [f / max(c, 1) for *_, f, c, _ in sums], "share of candidates that do not meet", "C1"),
-        (column[2], [t for *_, t in sums], "ms a frame, mean over scenes", "C2"),
+        (column[2], [t for *_, t in sums], "ms per frame, mean over scenes", "C2"),
     ):
         panel.bar(positions, values, color=colour)
         panel.set_ylabel(title, fontsize=7)

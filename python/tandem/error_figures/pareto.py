@@ -127,7 +127,7 @@ def _scatter(axes, points, error):
     """Draws a panel. Names those points of the frontier that gain the error's step, by the settings in which
     they differ."""
     value = error.value
-    axes.set(xlabel="ms a frame", ylabel=error.title)
+    axes.set(xlabel="ms per frame", ylabel=error.title)
     known = [p for p in points if value(p) is not None]
     points = [p for p in known if value(p) > 0 and p.ms() > 0]
     if not points:

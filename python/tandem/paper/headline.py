@@ -23,7 +23,7 @@ def interval_text(measured):
 
 
 def four_methods(folder):
-    """One row for each scene, its frames and k with at least two of the four methods: milliseconds a frame of
+    """One row for each scene, its frames and k with at least two of the four methods: milliseconds per frame of
     each case, and gProximity's time over that of the others as a Measured."""
     rows = []
     for scene, k, cases in four_of_scenes(folder, ("8", "18")):
@@ -94,7 +94,7 @@ def sentences(folder, claims):
 
 
 def method_rows(folder):
-    """Rows of texts: scene, k, then for each method milliseconds a frame, and gProximity over it with its
+    """Rows of texts: scene, k, then for each method milliseconds per frame, and gProximity over it with its
     interval."""
     rows = []
     for row in four_methods(folder):

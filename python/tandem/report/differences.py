@@ -24,7 +24,7 @@ def _against(cell, old):
 
 
 def _row(cell, name, number, old):
-    """`number`: that of the new cell on the page, or None. Times are milliseconds a frame, as everywhere on
+    """`number`: that of the new cell on the page, or None. Times are milliseconds per frame, as everywhere on
     the page."""
     row = {"label": name, "verdict": VERDICTS[cell.verdict], "cell": number, "against": _against(cell, old)}
     if cell.verdict == "another_answer":

@@ -170,7 +170,7 @@ def text(rows, devices):
         count = " to ".join(f"{value:,.0f}" for value in ([pairs[0], pairs[-1]] if len(pairs) > 1 else pairs))
         named = labels(own, devices, BOUNDS.keys() - {"output"})
         parts += [
-            f"\n### {heading}\n\n{count or 'Unknown'} candidate pairs a frame.\n\n",
+            f"\n### {heading}\n\n{count or 'Unknown'} candidate pairs per frame.\n\n",
             _stage_table(own, named),
             _ratio_table(own, named),
         ]

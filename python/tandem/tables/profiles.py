@@ -14,7 +14,7 @@ class Profile(Named):
     HEADS = [
         "kernel",
         "stage",
-        "us a frame",
+        "us per frame",
         "share",
         "launches",
         "times its floor",
