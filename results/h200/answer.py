@@ -171,12 +171,12 @@ that are decided on both cards, {changed} have another verdict there."""
         return f"""\
 {self._medians()}
 
-Milliseconds per frame, contacts included, with k = 18 and everything on the device: one {self.origin}. Tiled is {span(map(lead, self.scenes))} times as fast as the
-best other method; brackets are 95 % intervals. {sum(self.right)} of {len(self.right)} measured cells have the reference's pairs and contacts, bit for bit, and no colliding pair
-is missed: this is [proved](algorithms/bounds/README.md), and [tested](docs/user/accuracy.md) against the exact truth.
+Milliseconds per frame, contacts included, with everything on the device: one {self.origin}. A bounding volume has k = 18 planes (k = 6 is a box); *density* is the filled share of a pile's box.
+Tiled is {span(map(lead, self.scenes))} times as fast as the best other method; brackets are 95 % intervals. {sum(self.right)} of {len(self.right)} cells (a method, a scene and a k) have the reference's pairs and contacts,
+bit for bit. With vertices as rounded to the cell's precision, no colliding pair is missed: this is [proved](algorithms/bounds/README.md), and [tested](docs/user/accuracy.md) against the exact truth.
 
-**The paper** reports that chunks take {low:.0f} to {high:.0f} times less time than gProximity. Most of that factor is gProximity uploading nearly empty queue buffers. Without these uploads, the paper's schedule
-{against_gproximity(schedule, "scenes")} The grouped schedule, which walks the same chunks, {against_gproximity(grouped, "scenes")}
+**The paper** reports that chunks take {low:.0f} to {high:.0f} times less time than gProximity. Most of that factor is gProximity's uploads of nearly empty queues. Without these uploads, the paper's schedule
+{against_gproximity(schedule, "scenes")} The grouped schedule of the same chunks {against_gproximity(grouped, "scenes")}
 [Each claim of the paper has a verdict](results/h200/paper/README.md)."""
 
     def fastest(self, scene):
