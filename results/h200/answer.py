@@ -76,24 +76,20 @@ class Answer:
             self.cells[scene, record["settings"]["k"], method_of(record)] = Cell(record)
         self.origin = " and ".join(sorted({cell.origin for cell in self.cells.values()}))
 
-    def _table(self, methods, cell_text, values_of_k=("8", "18")):
-        """A table with one row per scene and k, and one column per method."""
-        rows = [
-            [scene, k, *(cell_text({m: self.cells[scene, k, m] for m in METHODS}, m) for m in methods)]
-            for scene in self.scenes
-            for k in values_of_k
-        ]
-        return markdown.table(["scene", "k", *map(METHODS.get, methods)], rows).rstrip("\n")
-
     def _times(self):
-        """Milliseconds per frame; the least median of a row is bold."""
+        """Milliseconds per frame, one row per scene and k; the least median of a row is bold."""
 
         def shown(own, method):
             medians = {name: median_interval(list(own[name].total.values())) for name in own}
             written = with_width(own[method].total.values())
             return f"**{written}**" if medians[method] == min(medians.values(), key=sum) else written
 
-        return self._table(METHODS, shown)
+        rows = [
+            [scene, k, *(shown({m: self.cells[scene, k, m] for m in METHODS}, method) for method in METHODS)]
+            for scene in self.scenes
+            for k in ("8", "18")
+        ]
+        return markdown.table(["scene", "k", *METHODS.values()], rows).rstrip("\n")
 
     def _stages(self):
         """Microseconds of the device per frame by stage, k = 18, and launches: a scene of few contacts, of many,
@@ -108,15 +104,22 @@ class Answer:
                 whole = cell.stage_us(cell.record["stages"])
                 rest = whole - sum(us.values())
                 numbers = [*us.values(), rest, whole]
-                rows.append([scene, name, *map(text, numbers), text(cell.launches)])
+                rows.append([scene.partition(", frames")[0], name, *map(text, numbers), text(cell.launches)])
         return markdown.table(["scene", "method", *STAGES, OTHERS, "all", "launches"], rows).rstrip("\n")
 
     def _ratios(self):
-        def shown(own, method):
-            ratio = paired(own[method], own["tiled"])
+        """How many times as long as tiled each method takes with k = 18."""
+
+        def shown(scene, method):
+            ratio = paired(self.cells[scene, "18", method], self.cells[scene, "18", "tiled"])
             return ("≈ " if ratio.low <= 1 <= ratio.high else "") + with_interval(ratio)
 
-        return self._table([method for method in METHODS if method != "tiled"], shown, ["18"])
+        others = [method for method in METHODS if method != "tiled"]
+        rows = [
+            [scene.partition(", frames")[0], *(shown(scene, method) for method in others)]
+            for scene in self.scenes
+        ]
+        return markdown.table(["scene", *map(METHODS.get, others)], rows).rstrip("\n")
 
     def tables(self):
         """Texts by the names of their marks."""
@@ -171,12 +174,12 @@ that are decided on both cards, {changed} have another verdict there."""
         return f"""\
 {self._medians()}
 
-Milliseconds per frame, contacts included, with k = 18 and everything on the device: one {self.origin}. Tiled is {span(map(lead, self.scenes))} times as fast as the
-best other method; brackets are 95 % intervals. {sum(self.right)} of {len(self.right)} measured cells have the reference's pairs and contacts, bit for bit, and no colliding pair
-is missed: this is [proved](algorithms/bounds/README.md), and [tested](docs/user/accuracy.md) against the exact truth.
+Milliseconds per frame, contacts included, with everything on the device: one {self.origin}. A bounding volume has k = 18 planes (k = 6 is a box); *density* is the bodies' volume over that of their box.
+Tiled is {span(map(lead, self.scenes))} times as fast as the best other method; brackets are 95 % intervals. {sum(self.right)} of {len(self.right)} cells (a method, a scene and a k) have the reference's pairs and contacts,
+bit for bit. With vertices as rounded to the cell's precision, no colliding pair is missed: this is [proved](algorithms/bounds/README.md), and [tested](docs/user/accuracy.md) against the exact truth.
 
-**The paper** reports that chunks take {low:.0f} to {high:.0f} times less time than gProximity. Most of that factor is gProximity uploading nearly empty queue buffers. Without these uploads, the paper's schedule
-{against_gproximity(schedule, "scenes")} The grouped schedule, which walks the same chunks, {against_gproximity(grouped, "scenes")}
+**The paper** reports that chunks take {low:.0f} to {high:.0f} times less time than gProximity. Most of that factor is gProximity's uploads of nearly empty queues. Without these uploads, the paper's schedule
+{against_gproximity(schedule, "scenes")} The grouped schedule of the same chunks {against_gproximity(grouped, "scenes")}
 [Each claim of the paper has a verdict](results/h200/paper/README.md)."""
 
     def fastest(self, scene):

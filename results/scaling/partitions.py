@@ -45,7 +45,7 @@ def tables(found):
             "bodies per part",
             "seconds",
             "us per body",
-            "most bodies over mean",
+            "largest part / mean part",
             *ghosts,
         ],
         "ghosts": ["ranks", "bodies per rank", *ghosts, "ranks that own them", "KB sent at the set-up, most"]

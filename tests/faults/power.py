@@ -157,7 +157,7 @@ class Power(Case):
     def tearDownClass(cls):
         print(f"disks after a loss of power: {dict(cls.lost)}")
         if cls.clear == cls.swept:
-            tried("losses of power: disks with what was not synced gone", sum(cls.lost.values()), "disks")
+            tried("losses of power: disks without unsynced changes", sum(cls.lost.values()), "disks")
         super().tearDownClass()
 
     def words(self, command, folder):

@@ -18,7 +18,7 @@ from tests.program import BUILT, LONG, PROGRAM, Case, messages, ran, sets, tande
 
 PRELOAD = str(BUILT / "libtandem_faults.so")
 CALLS = {family: family for family in ("open", "write", "fsync", "rename")}
-CALLS |= {"truncate": "ftruncate", "thread": "pthread_create", "large": "all large malloc from one on"}
+CALLS |= {"truncate": "ftruncate", "thread": "pthread_create", "large": "every large malloc from the N-th on"}
 CALLS |= {"malloc": "malloc"}
 FAMILIES = tuple(CALLS)
 FEW = {name: 4096 for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity")}

@@ -98,8 +98,9 @@ int run(const Options& options) {
             if (where.find(device->info().name) == std::string::npos)
                 where += (where.empty() ? "" : ", ") + device->info().name;
     if (options.rounding == "safe")
-        support::tried("pairs of hard families by five k, against the exact truth (`adversarial`)", sum.pairs,
-                       "pairs", where, total(sum.missed));
+        support::tried(
+            "pairs of hard families, with five values of k, against the exact truth (`adversarial`)",
+            sum.pairs, "pairs", where, total(sum.missed));
     return sum.ok() ? 0 : 1;
 }
 

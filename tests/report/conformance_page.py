@@ -129,7 +129,9 @@ class ConformancePage(Case):
 
         code, _, _, page = others()
         self.assertEqual(code, 0)
-        self.assertIn("2 cells were right on two devices or more; their digests are equal in 2.", page)
+        self.assertIn(
+            "2 cells were right on two devices or more; 2 of these have the same digest on all of them.", page
+        )
         self.assertIn("\n- other device: 2 of 2\n", page)
         code, text, _, page = others(digests={"tiled resident": "{}"})
         self.assertEqual(code, 1)
