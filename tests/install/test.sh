@@ -48,7 +48,7 @@ cmake --build "$work/consumer" >"$work/log" || { cat "$work/log" >&2; exit 1; }
   cmp "$records" walks.jsonl
   if [ -e prefix/libexec/tandem/javascript/chart.js/chart.min.js ]; then
     prefix/bin/tandem report walks.jsonl -o report.html >/dev/null
-    grep -q '>How tiled works<' report.html
+    grep -q '>How it works: tiled<' report.html
   fi
   prefix/bin/tandem accuracy hard:touch:pairs=4,together=2 --device host --set k=8,18 --repeat 1 --truth-contacts 1 --quiet --out truth.jsonl >/dev/null
   prefix/bin/tandem-figures truth.jsonl drawn >/dev/null
