@@ -24,6 +24,18 @@ std::string duplicates_choices() { return fmt::format("{}", fmt::join(duplicates
 
 } // namespace
 
+void add_mesh_options(CLI::App& app, std::vector<std::string>& meshes, std::vector<std::string>& poses) {
+    app.add_option("--mesh", meshes, "a mesh file of the scene, instead of SCENE; may be repeated")
+        ->expected(1)
+        ->take_all()
+        ->option_text("FILE");
+    app.add_option("--pose", poses,
+                   "\"tx ty tz qw qx qy qz\", one for each --mesh, in order (default: identity)")
+        ->expected(1)
+        ->take_all()
+        ->option_text("POSE");
+}
+
 void add_reading_options(CLI::App& app, MeshReading& reading) {
     app.add_option_function<std::string>(
            "--duplicates",

@@ -4,11 +4,17 @@
 
 #include "scenes/mesh_reading.h"
 
+#include <string>
+#include <vector>
+
 namespace CLI {
 class App;
 } // namespace CLI
 
 namespace tandem {
+
+/// Adds --mesh and --pose. The lists must outlive the parsing.
+void add_mesh_options(CLI::App& app, std::vector<std::string>& meshes, std::vector<std::string>& poses);
 
 /// Adds --duplicates, --weld, --pressure, --corners and --only-tetrahedra. `reading` must outlive the
 /// parsing.

@@ -23,15 +23,7 @@ TruthAmount parse_truth(const std::string& text) {
 
 /// Meshes and frames.
 void add_scene(CLI::App& app, RunOptions& options) {
-    app.add_option("--mesh", options.meshes, "a mesh file of the scene, instead of SCENE; may be repeated")
-        ->expected(1)
-        ->take_all()
-        ->option_text("FILE");
-    app.add_option("--pose", options.poses,
-                   "\"tx ty tz qw qx qy qz\", one for each --mesh, in order (default: identity)")
-        ->expected(1)
-        ->take_all()
-        ->option_text("POSE");
+    add_mesh_options(app, options.meshes, options.poses);
     app.add_option("--frames", options.frames, "the first and the last frame, or one number (default: all)")
         ->option_text("FIRST:LAST");
     app.add_option_function<std::string>(

@@ -107,15 +107,7 @@ void add_chunk_options(CLI::App& app, ExportOptions& options) {
 /// The scene, its frames, and what to find in them.
 void add_exported(CLI::App& app, ExportOptions& options) {
     app.option_defaults()->group(option_groups::exported);
-    app.add_option("--mesh", options.meshes, "a mesh file of the scene, instead of SCENE; may be repeated")
-        ->expected(1)
-        ->take_all()
-        ->option_text("FILE");
-    app.add_option("--pose", options.poses,
-                   "\"tx ty tz qw qx qy qz\", one per --mesh, in order (default: identity)")
-        ->expected(1)
-        ->take_all()
-        ->option_text("POSE");
+    add_mesh_options(app, options.meshes, options.poses);
     app.add_option("--frames", options.frames, "FIRST:LAST, both inclusive (default: all)")
         ->option_text("FIRST:LAST");
     app.add_option("--every", options.every, "export every Nth of these frames only (default: 1)")
