@@ -25,18 +25,18 @@ from measured import (
     with_interval,
     with_width,
 )
-from tandem import markdown
+from tandem import markdown, names
 
 SECOND = FOLDER / "second_card"
 PAGES = RESULTS.parent / "README.md", FOLDER / "README.md", FOLDER / "kernels.md"
 STAGES = {"refit": ["refit"], "walk": ["seed", "traverse", "balance"], "contacts": ["contact"]}
 OTHERS = "rest of the device"
 METHODS = {
-    "tiled": "tiled",
-    "chunked": "grouped schedule",
-    "paper": "paper's schedule",
-    "fair": "gProximity",
-    "leaf_query": "leaf queries",
+    "tiled": names.method("tiled", "resident"),
+    "chunked": names.method("chunked", "grouped"),
+    "paper": names.method("chunked", "paper"),
+    "fair": names.method("gproximity", "fair"),
+    "leaf_query": names.method("leaf_query", "resident"),
 }
 DRAWN = {
     "tiled": ("#0b5394", "o"),

@@ -8,7 +8,7 @@ import subprocess
 import sys
 import threading
 
-from tests.collider.case import DEVICES, FOLDER, POSES, ColliderCase, tandem
+from tests.collider.case import DEVICES, FOLDER, ColliderCase, tandem
 
 FORK = """
 import os, signal, sys

@@ -9,7 +9,6 @@ import unittest
 
 import numpy
 
-from tests.program import SOURCE
 
 from tandem import rank_tests, resampling
 from tandem.comparison import matching

@@ -6,7 +6,6 @@ Python package on cells of several runs."""
 import types
 import unittest
 
-from tests.program import SOURCE
 
 from tandem.lines import RecordError
 from tandem.verdicts import RecordedVerdicts, computed, verdict_of

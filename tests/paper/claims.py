@@ -24,7 +24,6 @@ from tandem.paper.rules import (
     AGREES,
     BY_CONSTRUCTION,
     DIFFERS,
-    ERRATUM,
     NOT_SETTLED,
     UNTESTED,
     Measured,

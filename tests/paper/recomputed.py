@@ -9,8 +9,6 @@ from tests.program import SOURCE
 
 import pandas
 
-from tandem.paper import claims
-from tandem.paper.rules import together
 
 COMMITTED = SOURCE / "results/h200/paper"
 

@@ -5,7 +5,6 @@ sentences, conditions, and omissions for lack of space."""
 
 import dataclasses
 import json
-import re
 import statistics
 import unittest
 

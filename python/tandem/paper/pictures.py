@@ -13,7 +13,7 @@ import tempfile
 import numpy
 from matplotlib.patches import Rectangle
 
-from .drawing import COLOURS, INK, PALE, Plot, missing
+from .drawing import COLOURS, INK, Plot, missing
 from .tables import written
 
 TITLES = {
