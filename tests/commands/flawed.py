@@ -207,7 +207,7 @@ class Flawed(Case):
             " ".join(tandem("run", "--help")[1].split()),
         )
         self.assertIn(
-            "A file with a coordinate that is not finite is refused with every value",
+            "A file with a coordinate that is not finite is refused, whatever `--degenerate` says",
             (SOURCE / "docs/user/own_data.md").read_text(),
         )
 
