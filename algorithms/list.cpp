@@ -12,9 +12,9 @@
 // instance. Baselines are libraries of others.
 // clang-format off
 #define TANDEM_ALGORITHMS(ALGORITHM) \
+    ALGORITHM(tiled) \
     ALGORITHM(chunked) \
     ALGORITHM(gproximity) \
-    ALGORITHM(tiled) \
     ALGORITHM(leaf_query)
 #define TANDEM_BASELINES(ALGORITHM) \
     ALGORITHM(embree) \
@@ -76,6 +76,11 @@ const Preset& preset(const Traversal& traversal, std::string_view name) {
         names.emplace_back(candidate.name);
     }
     throw InputError(unknown(fmt::format("preset of {}", traversal.name()), name, names));
+}
+
+std::string title_of(const Traversal& traversal, const Preset& preset) {
+    return preset.title.empty() ? fmt::format("{} {}", traversal.name(), preset.name)
+                                : std::string(preset.title);
 }
 
 void add_kernel_sources(std::span<const KernelSource> sources) { known_sources().push_back(sources); }

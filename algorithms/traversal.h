@@ -228,4 +228,7 @@ const Traversal& algorithm(std::string_view name);
 /// The preset of that name. Throws InputError.
 const Preset& preset(const Traversal& traversal, std::string_view name);
 
+/// The name of a method in tables, messages and pages: the preset's title, or "algorithm preset" without one.
+std::string title_of(const Traversal& traversal, const Preset& preset);
+
 } // namespace tandem

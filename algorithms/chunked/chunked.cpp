@@ -22,13 +22,15 @@ constexpr std::array<const Parameter*, 8> own{&chunk_bytes, &leaves,  &seed_thre
 
 const std::vector<Preset> all_presets{
     {"grouped",
-     "our schedule: work-groups share the walks of their seeds; everything resident, one wait per frame",
+     "work-groups share the walks of their seeds; everything resident, one wait per frame",
      {parameters::broad(Broad::device), parameters::builder(Builder::sah)},
+     "grouped schedule",
      "resident"},
     {"paper",
-     "the paper's schedule (item, both children, threshold 10^7) with everything resident",
+     "each work-item walks seeds of its own, both children, threshold 10^7; everything resident",
      {parameters::broad(Broad::device), schedule(Schedule::item), descent(Descent::both),
       seed_threshold(10000000)},
+     "paper's schedule",
      {},
      true},
     {"published",
@@ -36,6 +38,7 @@ const std::vector<Preset> all_presets{
      {parameters::k(8), parameters::origin(Origin::world), parameters::residency(Residency::published),
       parameters::copies(TreeCopies::pair), parameters::broad(Broad::sphere_boxes), schedule(Schedule::item),
       descent(Descent::both), seed_threshold(10000000), parameters::group_size(64), root_test(false)},
+     {},
      {},
      true}};
 

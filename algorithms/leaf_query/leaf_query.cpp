@@ -15,7 +15,8 @@ const std::vector<Preset> all_presets{
     {"resident",
      "everything resident, body pairs included, one wait per frame",
      // More groups than run at once: queries take unlike times, and a group that ends makes room for another.
-     {parameters::broad(Broad::device), parameters::builder(Builder::sah), parameters::work_items(8192)}}};
+     {parameters::broad(Broad::device), parameters::builder(Builder::sah), parameters::work_items(8192)},
+     "leaf queries"}};
 
 constexpr std::array<const Parameter*, 2> own{&leaf_query_parameters::tree, &leaf_query_parameters::rebuild};
 

@@ -192,6 +192,7 @@ struct Preset {
     std::string_view name;             ///< in options and records; unique within an algorithm
     std::string_view help;             ///< explanation for listings
     std::vector<Assignment> values;    ///< of the settings that it changes
+    std::string_view title = {};       ///< name of the method for people (title_of); unique among all methods
     std::string_view former_name = {}; ///< before record schema 4; empty: the same
     bool reproduces = false;           ///< a program of others, with its contact rule (Traversal::settings)
 

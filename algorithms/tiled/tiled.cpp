@@ -17,10 +17,10 @@ namespace {
 constexpr std::array<const Parameter*, 3> own{&parameters::slabs, &tiled_parameters::tile_pair_capacity,
                                               &tiled_parameters::most_seeds};
 
-const std::vector<Preset> all_presets{
-    {"resident",
-     "everything resident, body pairs included, one wait per frame",
-     {parameters::broad(Broad::device), parameters::builder(Builder::sah)}}};
+const std::vector<Preset> all_presets{{"resident",
+                                       "everything resident, body pairs included, one wait per frame",
+                                       {parameters::broad(Broad::device), parameters::builder(Builder::sah)},
+                                       "tiled"}};
 
 constexpr std::array all_counters{counters::bvtt_nodes, counters::seeds, tiled_counters::upper_tests,
                                   tiled_counters::leaf_tile_pairs};

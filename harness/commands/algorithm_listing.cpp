@@ -52,6 +52,7 @@ Json algorithm_json(const Traversal& traversal, bool baseline) {
     Json presets = Json::array();
     for (const auto& p : traversal.presets())
         presets.push_back({{"name", p.name},
+                           {"title", title_of(traversal, p)},
                            {"help", p.help},
                            {"values", p.texts()},
                            {"settings", settings_of(traversal, p).texts()}});
@@ -85,7 +86,8 @@ void print_counters(const Traversal& traversal) {
 void print_algorithm(const Traversal& traversal, bool baseline) {
     print_heading(traversal, baseline);
     put("  presets\n");
-    for (const auto& p : traversal.presets()) put_lines(fmt::format("    {:<18} {}", p.name, p.help), 23);
+    for (const auto& p : traversal.presets())
+        put_lines(fmt::format("    {:<18} {}: {}", p.name, title_of(traversal, p), p.help), 23);
     const auto& first = traversal.presets().front();
     const auto settings = settings_of(traversal, first);
     put("  settings, as in preset {}\n", first.name);
@@ -119,7 +121,7 @@ void explain_algorithm(const Traversal& traversal, bool baseline) {
     put("  presets; the first is the default\n");
     for (const auto& p : traversal.presets()) {
         const auto changed = changed_by(traversal, p);
-        put_lines(fmt::format("    {}: {}", p.name, p.help), 8);
+        put_lines(fmt::format("    {}, in tables \"{}\": {}", p.name, title_of(traversal, p), p.help), 8);
         put_lines(fmt::format("        {}{}", changed.empty() ? "changes no setting" : "sets ",
                               fmt::join(changed, ", ")),
                   10);

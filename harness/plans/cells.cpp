@@ -228,8 +228,8 @@ std::string method_of(const Cell& cell) {
     if (!cell.candidates.empty()) return std::string(automatic);
     std::vector<std::string> changed;
     for (const auto& [name, value] : changes(cell)) changed.push_back(fmt::format("{}={}", name, value));
-    return fmt::format("{} {}{}{}", cell.algorithm->name(), cell.preset, changed.empty() ? "" : " ",
-                       fmt::join(changed, ","));
+    return fmt::format("{}{}{}", title_of(*cell.algorithm, preset(*cell.algorithm, cell.preset)),
+                       changed.empty() ? "" : " ", fmt::join(changed, ","));
 }
 
 std::string describe(const Cell& cell) {

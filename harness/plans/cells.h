@@ -67,12 +67,12 @@ Cell make_cell(const Traversal& traversal, const Preset& preset, const SettingTe
 /// The settings that differ from the preset. Equal cells have equal changes, however the user named them.
 SettingTexts changes(const Cell& cell);
 
-/// The part of a cell's name that tables of one device need: "chunked grouped", with the settings that differ
-/// from the preset after it; "auto" before auto has chosen.
+/// The part of a cell's name that tables of one device need: "grouped schedule" (title_of), with the settings
+/// that differ from the preset after it; "auto" before auto has chosen.
 std::string method_of(const Cell& cell);
 
-/// The name of a cell in tables, messages and --filter: "chunked grouped on opencl:0", with the settings that
-/// differ from the preset after "grouped"; "auto on opencl:0" before auto has chosen.
+/// The name of a cell in tables, messages and --filter: "grouped schedule on opencl:0", with the settings
+/// that differ from the preset before "on"; "auto on opencl:0" before auto has chosen.
 std::string describe(const Cell& cell);
 
 } // namespace tandem

@@ -2,7 +2,7 @@
 """The names of methods and scenes that people read: in comparisons, reports, plots and pages. Needs only the
 standard library.
 
-scenes.json has the default parameters of scenes, which names leave out; scripts/schema writes it."""
+names.json has the titles of methods, and the default parameters of scenes, which names leave out; scripts/schema writes it."""
 
 import functools
 import json
@@ -10,26 +10,25 @@ import pathlib
 import re
 import sys
 
-METHODS = {
-    ("tiled", "resident"): "tiled",
-    ("chunked", "grouped"): "grouped schedule",
-    ("chunked", "paper"): "paper's schedule",
-    ("gproximity", "fair"): "gProximity",
-    ("leaf_query", "resident"): "leaf queries",
-}
 COUNTED = ("bodies", "worlds", "slices", "layers", "segments")
 LEFT_OUT = ("frames",)  # how many there are: names of cells have the range that was measured
 
 
-def method(algorithm, preset):
-    """ "grouped schedule" for algorithm chunked with preset grouped; other presets keep their own names."""
-    known = METHODS.get((algorithm, preset))
-    return known or " ".join(filter(None, (algorithm.replace("gproximity", "gProximity"), preset)))
-
-
 @functools.cache
-def _defaults():
-    return json.loads((pathlib.Path(__file__).parent / "scenes.json").read_text(encoding="utf-8"))
+def _written():
+    return json.loads((pathlib.Path(__file__).parent / "names.json").read_text(encoding="utf-8"))
+
+
+def method(algorithm, preset):
+    """ "grouped schedule" for algorithm chunked with preset grouped; unknown ones have the names of both."""
+    titles = _written()["methods"].get(algorithm, {})
+    return titles.get(preset) or " ".join(filter(None, (algorithm, preset)))
+
+
+def in_order(methods):
+    """Names of methods in one order for all pages, unknown ones last. Each occurs once."""
+    known = [title for titles in _written()["methods"].values() for title in titles.values()]
+    return sorted(dict.fromkeys(methods), key=lambda name: known.index(name) if name in known else len(known))
 
 
 def _parameters(rest):
@@ -74,7 +73,7 @@ def scene(key):
     given = _parameters(rest)
     if given is None:
         return key
-    usual = _defaults().get(name, {})
+    usual = _written()["scenes"].get(name, {})
     own = {**usual, **given}
     title = _pile(own) if name == "pile" else name
     more = [
@@ -83,13 +82,21 @@ def scene(key):
     return ", ".join([title, *more])
 
 
-def defaults(listed):
-    """{scene: {parameter: default}} of what `tandem scenes --json` prints, without the parameters of simulations."""
+def written(algorithms, scenes):
+    """What names.json has, from what `tandem algorithms --json` and `tandem scenes --json` print. Parameters of
+    simulations are left out."""
     return {
-        one["name"]: {name: parameter["default"] for name, parameter in one["parameters"].items()}
-        for one in listed
+        "methods": {
+            one["name"]: {preset["name"]: preset["title"] for preset in one["presets"]} for one in algorithms
+        },
+        "scenes": {
+            one["name"]: {name: parameter["default"] for name, parameter in one["parameters"].items()}
+            for one in scenes
+        },
     }
 
 
 if __name__ == "__main__":
-    print(json.dumps(defaults(json.load(sys.stdin)), indent=1))
+    print(
+        json.dumps(written(*[json.loads(pathlib.Path(name).read_text()) for name in sys.argv[1:]]), indent=1)
+    )

@@ -9,6 +9,8 @@ import subprocess
 
 from boxes.errors import BadData
 
+from tandem import names
+
 # A method on a frame. pairs: its count; the times are milliseconds, one a round: of a new tree, of new bounds in the
 # same tree, of the query, and of the frame. A method may lack the first or the second.
 Row = collections.namedtuple("Row", "name version device pairs build_ms refit_ms query_ms frame_ms")
@@ -65,7 +67,7 @@ def of_record(record):
     refit, query = ([1e-6 * sum(times) for times in zip(*parts[is_refit])] for is_refit in (True, False))
     frame = [1e-6 * time for time in record["total_ns"]["samples"]]
     return Row(
-        f"{record['algorithm']} {record['preset']}",
+        names.method(record["algorithm"], record["preset"]),
         f"tandem {record['environment']['commit']}",
         record["devices"][0]["name"],
         record["work"]["candidate_pairs"][0],

@@ -8,6 +8,8 @@ import tempfile
 
 from tests.program import SMALL, Case, sets, tandem
 
+from tandem.names import method
+
 EXACT = {"output": "contacts", "decision": "exact", "contact_rule": "sat"}
 GIVEN = {"k": "6", "builder": "morton", "leaves": "32", "slabs": "all", "contact_rule": "none"}
 
@@ -41,7 +43,7 @@ class Choosing(Case):
         chosen, candidates = record["chosen"], record["chosen"]["candidates"]
         self.assertIsNone(fixed["chosen"])
         self.assertEqual(len(errors), 1, errors)
-        name = f"auto: {record['algorithm']} {record['preset']}"
+        name = f"auto: {method(record['algorithm'], record['preset'])}"
         for words in (
             name,
             f"best of {chosen['of']} candidates",

@@ -289,9 +289,8 @@ class CommandLine(Case):
             for preset in entry["presets"]:
                 # The effective values: the preset's values replace the parameters' defaults.
                 self.assertEqual(preset["settings"], {**initial, **preset["values"]})
-                text = " ".join(out.split(f"\n    {preset['name']}: ")[1].split("\n    ")[1:6]).replace(
-                    "    ", " "
-                )
+                head = f'\n    {preset["name"]}, in tables "{preset["title"]}": '
+                text = " ".join(out.split(head)[1].split("\n    ")[1:6]).replace("    ", " ")
                 for name, value in preset["settings"].items():
                     self.assertEqual(
                         f"{name}={value}" in re.split(r"[\s,]+", text.split(": ")[0]),

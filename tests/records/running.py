@@ -90,7 +90,7 @@ class Running(Case):
         self.assertEqual((status, len(errors)), (0, 1), errors)
         self.assertIn("4 cells are named more than once", errors[0])
         self.assertIn("8 cells, about 56 s of rounds;", text)
-        self.assertEqual(len(re.findall(r"(?m)^ +\d+ +7 s  (?:chunked|tiled) \w+ .*on host$", text)), 8)
+        self.assertEqual(len(re.findall(r"(?m)^ +\d+ +7 s  (?:grouped schedule|tiled) .*on host$", text)), 8)
         self.assertEqual(len(re.findall(r"(?m)^ +(?:chunked|tiled)\|host:", text)), 8)
         self.assertFalse(out.exists())
 

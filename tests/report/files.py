@@ -215,11 +215,17 @@ class Pages(Case):
         """A name in a record is no path."""
         record = json.loads((H200 / "plan.jsonl").read_text().splitlines()[0])
         for names, drawn in (
-            (("tiled", "chunked", "tiled"), ["grouped schedule and paper's schedule", "tiled"]),
-            (("embree", "../methods/tiled", "<b>"), []),
+            (
+                ("tiled resident", "chunked paper", "tiled resident", "chunked grouped"),
+                ["grouped schedule and paper's schedule", "tiled"],
+            ),
+            (("embree resident", "../methods/tiled resident", "<b> resident"), []),
         ):
             path = self.work / "some.jsonl"
-            records = [{**record, "algorithm": name, "key": f"{i}"} for i, name in enumerate(names)]
+            records = [
+                {**record, **dict(zip(("algorithm", "preset"), name.split())), "key": f"{i}"}
+                for i, name in enumerate(names)
+            ]
             path.write_text("".join(json.dumps(one) + "\n" for one in records))
             text = "".join(
                 map(markup, (part.content for part in data_of(read_records([str(path)]), 1_000_000).sections))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # test: cost=1
-"""Names of methods and scenes (python/tandem/names.py), and the defaults that they leave out, which are the program's."""
+"""Names of methods and scenes (python/tandem/names.py), which are the program's."""
 
 import json
 
@@ -12,10 +12,12 @@ FUNNEL = "recording:{},frames=500,digest=1,of=funnel:bodies=2000,size=16"
 
 
 class Names(Case):
-    def test_defaults_are_those_of_the_program(self):
-        listed = names.defaults(json.loads(tandem("scenes", "--json")[1]))
-        committed = json.loads((SOURCE / "python/tandem/scenes.json").read_text())
-        self.assertEqual(committed, listed, "scripts/schema writes scenes.json")
+    def test_names_are_those_of_the_program(self):
+        listed = [json.loads(tandem(command, "--json")[1]) for command in ("algorithms", "scenes")]
+        committed = json.loads((SOURCE / "python/tandem/names.json").read_text())
+        self.assertEqual(committed, names.written(*listed), "scripts/schema writes names.json")
+        titles = [title for methods in committed["methods"].values() for title in methods.values()]
+        self.assertEqual(len(titles), len(set(titles)))
 
     def test_scenes(self):
         for key, name in (
@@ -48,6 +50,7 @@ class Names(Case):
             (("gproximity", "published"), "gProximity published"),
             (("leaf_query", "resident"), "leaf queries"),
             (("tiled", "resident"), "tiled"),
+            (("embree", "resident"), "Embree"),
             (("made_up", ""), "made_up"),
         ):
             self.assertEqual(names.method(*cell), name)

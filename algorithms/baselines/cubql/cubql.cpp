@@ -17,7 +17,8 @@ const std::vector<Preset> all_presets{
      "boxes, one tree per body built once by the surface area heuristic and refitted in every frame, queries "
      "of "
      "all body pairs in one launch",
-     {parameters::k(6), parameters::broad(Broad::device), parameters::builder(Builder::sah)}}};
+     {parameters::k(6), parameters::broad(Broad::device), parameters::builder(Builder::sah)},
+     "cuBQL"}};
 
 constexpr std::array all_counters{cubql_counters::leaf_tests};
 

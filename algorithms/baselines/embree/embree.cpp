@@ -15,7 +15,8 @@ namespace {
 const std::vector<Preset> all_presets{
     {"resident",
      "boxes, one tree per body built once and refitted in every frame, body pairs by the device's kernels",
-     {parameters::k(6), parameters::broad(Broad::device), parameters::builder(Builder::sah)}}};
+     {parameters::k(6), parameters::broad(Broad::device), parameters::builder(Builder::sah)},
+     "Embree"}};
 
 constexpr std::array all_counters{embree_counters::leaf_tests};
 

@@ -5,6 +5,7 @@ import re
 
 from .. import kinds, lines
 from ..cell import Cell
+from ..names import method
 from ..varying import varying
 
 SIZES = {"float": 2.0**-24, "double": 2.0**-53}
@@ -23,7 +24,7 @@ def device(cell):
 
 
 def label(cell):
-    return f"{cell.algorithm} {cell.preset}"
+    return method(cell.algorithm, cell.preset)
 
 
 def ends(cell):

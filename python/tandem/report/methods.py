@@ -11,18 +11,14 @@ from .leads import listed
 FOLDER = pathlib.Path(__file__).parent / "methods"
 
 
-def _methods(algorithm):
-    return listed([name for (own, _), name in names.METHODS.items() if own == algorithm])
-
-
-def drawings_of(algorithms):
-    """The drawings of those algorithms that have one, each under the names of its methods."""
-    return [
-        folded(
-            f"method-{file.stem}",
-            f"How it works: {_methods(file.stem)}",
-            Html(file.read_text(encoding="utf-8")),
+def drawings_of(cells):
+    """The drawings of the cells' algorithms that have one, each under the names of their methods."""
+    drawn = []
+    for file in sorted(FOLDER.glob("*.svg")):
+        methods = names.in_order(
+            names.method(cell.algorithm, cell.preset) for cell in cells if cell.algorithm == file.stem
         )
-        for file in sorted(FOLDER.glob("*.svg"))
-        if file.stem in algorithms
-    ]
+        if methods:
+            title, drawing = f"How it works: {listed(methods)}", Html(file.read_text(encoding="utf-8"))
+            drawn.append(folded(f"method-{file.stem}", title, drawing))
+    return drawn

@@ -59,10 +59,8 @@ def in_order(groups, rows):
 
 
 def methods_of(rows):
-    """Methods in one order for all pages, those without a name of their own last."""
-    known = list(names.METHODS.values())
-    found = dict.fromkeys(name for row in rows for name in (*row.marks, *row.wrong))
-    return sorted(found, key=lambda name: known.index(name) if name in known else len(known))
+    """The methods of the rows, in the order of all pages."""
+    return names.in_order(name for row in rows for name in (*row.marks, *row.wrong))
 
 
 def charted(rows, methods, title):

@@ -22,7 +22,7 @@ def results(leads, notes, has_cells):
 def tables(rows, methods, cells, shown):
     """`rows`, `methods`: from overview.py; `shown`: rows of all cells."""
     every = table("Every cell", COLUMNS, shown, notes=[CELLS], anchor="every", sorts=True)
-    drawings = drawings_of({cell.algorithm for cell in cells})
+    drawings = drawings_of(cells)
     return Section("cells", "Tables", [times(rows, methods, cells) if rows else None, drawings, every])
 
 

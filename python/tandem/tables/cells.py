@@ -131,11 +131,7 @@ def _ratio_table(rows, named):
     device_of = {id(r): device for r, (_, device) in zip(rows, named)}
     counted = any(r.release_launches is not None for r in rows)
     lines = [
-        [
-            f"{name.removeprefix('gproximity ')} / {base.removeprefix('chunked ')}",
-            device_of[id(g)],
-            *_ratios(g, c, counted),
-        ]
+        [f"{name} / {base}", device_of[id(g)], *_ratios(g, c, counted)]
         for g, name in theirs
         for c, base in by_rank.get(g.rank, ())
     ]

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Names of cells and devices in tables, made only of what differs among them."""
 
+from ..names import method
 from ..varying import varying
 
 
@@ -56,13 +57,13 @@ class Named:
 
 
 def labels(rows, devices, known=()):
-    """(text, devices) of each Named. The text has algorithm, preset, and the settings in which cells of both
-    differ, without those in `known`. Commits are added if nothing else differs."""
+    """(text, devices) of each Named. The text has the method, and the settings in which its cells differ,
+    without those in `known`. Commits are added if nothing else differs."""
     differ = varying({(row.family, row.settings) for row in rows})
     texts = [
         " ".join(
             [
-                *row.family,
+                method(*row.family),
                 *(
                     f"{name}={value}"
                     for name, value in row.settings
