@@ -8,6 +8,7 @@
 #include "base/error.h"
 
 #include <fmt/format.h>
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/vector.h>
 
 namespace nb = nanobind;
@@ -248,6 +249,7 @@ void bind_answer(nb::module_& module) {
         .def_prop_ro("seconds", &Answer::seconds)
         .def_prop_ro("retries", number<&FrameResult::retries>())
         .def_prop_ro("batches", number<&FrameResult::batches>())
+        .def_prop_ro("origin", number<&FrameResult::origin>())
         .def("digest", &digest<&Answer::digest>)
         .def("contact_digest", &digest<&Answer::contact_digest>)
         .def("pairs", &pairs<&Answer::pairs>)

@@ -72,7 +72,7 @@ class Wrenches(NamedTuple):
     forces: numpy.ndarray  #: (n, 3) float64: on body a, in units of pressure times area; b has the opposite
     torques: (
         numpy.ndarray
-    )  #: (n, 3) float64: on body a about its position; of a deformable body about the answer's origin
+    )  #: (n, 3) float64: on body a about its position; of a deformable body about Answer.origin
     areas: numpy.ndarray  #: (n,) float64
     polygons: numpy.ndarray  #: (n,) uint32: their number
 
@@ -121,6 +121,11 @@ class Answer:
     def batches(self) -> int:
         """Number of parts into which the frame was split for lack of memory; 1: not split."""
         return self._core.batches
+
+    @property
+    def origin(self) -> numpy.ndarray:
+        """(3,) float64: the point about which the torques of deformable bodies are."""
+        return numpy.array(self._core.origin)
 
     def digest(self) -> Digest:
         """Digest of the pairs, computed on the device without a download of the pairs."""

@@ -75,6 +75,20 @@ class Pressures(ColliderCase):
             self.assertLess(abs(sums.torques[0] - torque).max(), 1e-5)
             self.assertAlmostEqual(sums.areas[0], found.areas.sum(), 12)
 
+    def test_torques_of_deformable_bodies_are_about_the_origin_of_the_answer(self):
+        mesh = tandem.make_mesh(*self.arrays, pressures=FIELD)
+        vertices = [self.arrays[0] + shift for shift in ([100, 0, 0], [100.3, 0.2, 0.1])]
+        given = {"precision": "double", "deformable": True}
+        found = (
+            self.collider([mesh, mesh], contact_rule="pressure", **given).run(vertices=vertices).surfaces()
+        )
+        answer = self.collider([mesh, mesh], output="wrenches", **given).run(vertices=vertices)
+        self.assertGreater(answer.origin[0], 50)
+        forces = found.normals * (found.areas * found.pressures)[:, None]
+        torque = numpy.cross(found.centroids - answer.origin, forces).sum(axis=0)
+        self.assertLess(abs(answer.wrenches().torques[0] - torque).max(), 1e-4)
+        self.assertGreater(abs(torque).max(), 1e-2)
+
     def test_each_rule_has_its_function(self):
         mesh = tandem.make_mesh(*self.arrays, pressures=FIELD)
         polygons = self.collider([mesh, mesh], contact_rule="pressure").run(POSES)
