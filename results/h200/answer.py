@@ -5,6 +5,7 @@ the pages of results/h200, and draws answer.svg. Scenes are those of plan.json, 
 Medians have the half width of their 95 % interval. Ratios are medians over rounds that were measured side by
 side."""
 
+import collections
 import csv
 import json
 import pathlib
@@ -28,9 +29,30 @@ from measured import (
 from tandem import markdown, names
 
 SECOND = FOLDER / "second_card"
-PAGES = RESULTS.parent / "README.md", FOLDER / "README.md", FOLDER / "kernels.md"
+PAGES = (
+    RESULTS.parent / "README.md",
+    *(FOLDER / page for page in ("README.md", "kernels.md", "paper/README.md")),
+)
 STAGES = {"refit": ["refit"], "walk": ["seed", "traverse", "balance"], "contacts": ["contact"]}
 OTHERS = "rest of the device"
+# Some claims in short, and what their values are.
+SHOWN_CLAIMS = {
+    "narrow-in-all-cases": ("Chunked's narrow phase is always faster (whole queue array)", "times as fast"),
+    "narrow-small-array": ("It is 6 to 133 times as fast (small queue array)", "times as fast"),
+    "write-bottleneck": ("Uploads take most of gProximity's time (whole queue array)", "% of the time"),
+    "fewer-launches": ("Chunked always launches fewer kernels", "times fewer"),
+    "schedule-resident": ("Its static schedule beats balancing (everything on the device)", "times as fast"),
+    "threshold-choice": ("A seed threshold of 10^7 is best", "times as long as with the best one"),
+    "opencl-and-cuda": ("OpenCL and CUDA give similar factors", "times another factor"),
+}
+VERDICTS = {
+    "agrees": "agree",
+    "differs": "differ",
+    "not settled": "are not settled",
+    "untested": "are untested",
+    "by construction": "hold by construction",
+    "erratum": "are errata",
+}
 METHODS = {
     "tiled": names.method("tiled", "resident"),
     "chunked": names.method("chunked", "grouped"),
@@ -129,6 +151,7 @@ class Answer:
             "frame ratios": self._ratios(),
             "stages": self._stages(),
             "second card": self._second(),
+            "verdicts": verdict_lines(FOLDER / "paper/claims.csv"),
             "kernels": kernel_table(records(FOLDER / "profile.jsonl")),
         }
 
@@ -174,12 +197,12 @@ that are decided on both cards, {changed} have another verdict there."""
         return f"""\
 {self._medians()}
 
-Milliseconds per frame, contacts included, with everything on the device: one {self.origin}. A bounding volume has k = 18 planes (k = 6 is a box); *density* is the bodies' volume over that of their box.
-Tiled is {span(map(lead, self.scenes))} times as fast as the best other method; brackets are 95 % intervals. {sum(self.right)} of {len(self.right)} cells (a method, a scene and a k) have the reference's pairs and contacts,
+Milliseconds per frame, contacts included, with everything on the device: one {self.origin}. Bounding volumes have k = 18 planes (6 make a box); *density* is the bodies' volume over that of their box.
+Tiled is {span(map(lead, self.scenes))} times as fast as the best other method; brackets are 95 % intervals. In {sum(self.right)} of {len(self.right)} cells (method, scene, k = 8 or 18), pairs and contacts equal the reference's,
 bit for bit. With vertices as rounded to the cell's precision, no colliding pair is missed: this is [proved](algorithms/bounds/README.md), and [tested](docs/user/accuracy.md) against the exact truth.
 
-**The paper** reports that chunks take {low:.0f} to {high:.0f} times less time than gProximity. Most of that factor is gProximity's uploads of nearly empty queues. Without these uploads, the paper's schedule
-{against_gproximity(schedule, "scenes")} The grouped schedule of the same chunks {against_gproximity(grouped, "scenes")}
+**The paper** reports that chunks take {low:.0f} to {high:.0f} times less time than gProximity. Most of that factor is gProximity's uploads of nearly empty queues. Against our gProximity, without these uploads and with all body pairs at once, the paper's schedule
+{against_gproximity(schedule, "scenes")} The grouped schedule {against_gproximity(grouped, "scenes")}
 [Each claim of the paper has a verdict](results/h200/paper/README.md)."""
 
     def fastest(self, scene):
@@ -245,6 +268,25 @@ def verdicts(path):
     """The verdict of each claim over all its scenes, or its only one."""
     with path.open() as file:
         return {row["claim"]: row["verdict"] for row in csv.DictReader(file)}
+
+
+def verdict_lines(path):
+    """How many claims have which verdict, and a table of some of them with the least and greatest value of their
+    scenes."""
+    with path.open() as file:
+        rows = list(csv.DictReader(file))
+    counts = collections.Counter(verdicts(path).values())
+    listed = ", ".join(f"{count} {VERDICTS[verdict]}" for verdict, count in counts.most_common())
+    table = []
+    for claim, (says, unit) in SHOWN_CLAIMS.items():
+        own = [row for row in rows if row["claim"] == claim]
+        values = [float(row["value"]) * (100 if row["unit"] == "%" else 1) for row in own if row["value"]]
+        ends = " to ".join(dict.fromkeys(map(text, (min(values), max(values)))))
+        table.append([says, own[-1]["verdict"], f"{ends} {unit}"])
+    heads = ["claim", "verdict", "measured, by scene"]
+    return f"Of {counts.total()} claims, {listed}. Some of them:\n\n{markdown.table(heads, table)}".rstrip(
+        "\n"
+    )
 
 
 def kernel_table(found):
