@@ -38,10 +38,12 @@ OTHERS = "rest of the device"
 # Some claims in short, and what their values are.
 SHOWN_CLAIMS = {
     "narrow-in-all-cases": ("Chunked's narrow phase is always faster (whole queue array)", "times as fast"),
-    "narrow-small-array": ("It is 6 to 133 times as fast (small queue array)", "times as fast"),
     "write-bottleneck": ("Uploads take most of gProximity's time (whole queue array)", "% of the time"),
     "fewer-launches": ("Chunked always launches fewer kernels", "times fewer"),
-    "schedule-resident": ("Its static schedule beats balancing (everything on the device)", "times as fast"),
+    "schedule-resident": (
+        "Its static schedule beats balancing (everything on the device, also k = 8)",
+        "times as fast",
+    ),
     "threshold-choice": ("A seed threshold of 10^7 is best", "times as long as with the best one"),
     "opencl-and-cuda": ("OpenCL and CUDA give similar factors", "times another factor"),
 }
@@ -152,6 +154,7 @@ class Answer:
             "stages": self._stages(),
             "second card": self._second(),
             "verdicts": verdict_lines(FOLDER / "paper/claims.csv"),
+            "factors": self.factors(),
             "kernels": kernel_table(records(FOLDER / "profile.jsonl")),
         }
 
@@ -172,7 +175,7 @@ class Answer:
         return f"""\
 The plan also ran on another card of the same model, by {other.origin.partition(", ")[2]} (`second_card/`). The fastest method is the same in {same} of {len(rows)} rows. Times are at
 most {calm:.2f} times as long there, but up to {slower[worst]:.2f} times in {worst.partition(",")[0]}, where the host of that card sets the pace. Of {len(both)} claims of the paper
-that are decided on both cards, {changed} have another verdict there."""
+that were tested on both cards, {changed} have another verdict there."""
 
     def _medians(self):
         """Milliseconds per frame with k = 18; the least of a row is bold."""
@@ -199,11 +202,33 @@ that are decided on both cards, {changed} have another verdict there."""
 
 Milliseconds per frame, contacts included, with everything on the device: one {self.origin}. Bounding volumes have k = 18 planes (6 make a box); *density* is the bodies' volume over that of their box.
 Tiled is {span(map(lead, self.scenes))} times as fast as the best other method; brackets are 95 % intervals. In {sum(self.right)} of {len(self.right)} cells (method, scene, k = 8 or 18), pairs and contacts equal the reference's,
-bit for bit. With vertices as rounded to the cell's precision, no colliding pair is missed: this is [proved](algorithms/bounds/README.md), and [tested](docs/user/accuracy.md) against the exact truth.
+bit for bit. With vertices rounded to single precision, no colliding pair is missed: this is [proved](algorithms/bounds/README.md), and [tested](docs/user/accuracy.md) against the exact truth.
 
 **The paper** reports that chunks take {low:.0f} to {high:.0f} times less time than gProximity. Most of that factor is gProximity's uploads of nearly empty queues. Against our gProximity, without these uploads and with all body pairs at once, the paper's schedule
 {against_gproximity(schedule, "scenes")} The grouped schedule {against_gproximity(grouped, "scenes")}
 [Each claim of the paper has a verdict](results/h200/paper/README.md)."""
+
+    def factors(self):
+        """How many times as long as chunked gProximity takes, by what is compared: in the paper, and here."""
+        with open(FOLDER / "paper/claims.csv", newline="") as file:
+            rows = [row for row in csv.DictReader(file) if row["value"]]
+        of_claim = lambda claim: [float(row["value"]) for row in rows if row["claim"] == claim]
+        at = lambda scene, method: self.cells[scene, "18", method]
+        of_plan = lambda method: [paired(at(s, "fair"), at(s, method)).value for s in self.scenes]
+        narrow, frame = "narrow phase as published", "whole frame, everything on the device, k = 18"
+        return markdown.table(
+            ["compared", "the paper's GPUs", "this GPU"],
+            [
+                [f"{narrow}, whole queue array", ends(claimed()), ends(of_claim("narrow-in-all-cases"))],
+                [
+                    f"{narrow}, without its upload",
+                    ends(without_upload()),
+                    ends(of_claim("narrow-small-array")),
+                ],
+                [f"{frame}: the paper's schedule", "", ends(of_plan("paper"))],
+                [f"{frame}: the grouped schedule", "", ends(of_plan("chunked"))],
+            ],
+        ).rstrip("\n")
 
     def fastest(self, scene):
         """The drawn method that is told to be the fastest in a scene."""
@@ -281,8 +306,7 @@ def verdict_lines(path):
     for claim, (says, unit) in SHOWN_CLAIMS.items():
         own = [row for row in rows if row["claim"] == claim]
         values = [float(row["value"]) * (100 if row["unit"] == "%" else 1) for row in own if row["value"]]
-        ends = " to ".join(dict.fromkeys(map(text, (min(values), max(values)))))
-        table.append([says, own[-1]["verdict"], f"{ends} {unit}"])
+        table.append([says, own[-1]["verdict"], f"{ends(values)} {unit}"])
     heads = ["claim", "verdict", "measured, by scene"]
     return f"Of {counts.total()} claims, {listed}. Some of them:\n\n{markdown.table(heads, table)}".rstrip(
         "\n"
@@ -319,6 +343,25 @@ def claimed():
     with open(RESULTS / "paper/table4.csv", newline="") as file:
         factors = [float(row["narrow"]) for row in csv.DictReader(file)]
     return min(factors), max(factors)
+
+
+def without_upload():
+    """Ratios of gProximity's to chunked's times in the paper's Table 5, without column Write."""
+    with open(RESULTS / "paper/table5.csv", newline="") as file:
+        times = {(row["scene"], row["gpu"], row["algorithm"]): row for row in csv.DictReader(file)}
+    seconds = lambda row: sum(
+        float(row[name] or 0) for name in row if name.endswith("_s") and name != "write_s"
+    )
+    return [
+        seconds(row) / seconds(times[scene, gpu, "chunked"])
+        for (scene, gpu, algorithm), row in times.items()
+        if algorithm == "gproximity"
+    ]
+
+
+def ends(values):
+    """ "1.42 to 8.35"; one number if both are written alike."""
+    return " to ".join(dict.fromkeys(map(text, (min(values), max(values)))))
 
 
 def span(ratios):
