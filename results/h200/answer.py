@@ -198,9 +198,10 @@ that were tested on both cards, {changed} have another verdict there."""
         schedule = [paired(at(scene, "fair"), at(scene, "paper")) for scene in self.scenes]
         low, high = claimed()
         return f"""\
+Milliseconds per frame, contacts included, with everything on the device: one {self.origin}. Bounding volumes have k = 18 planes (6 make a box); *density* is the bodies' volume over that of their box.
+
 {self._medians()}
 
-Milliseconds per frame, contacts included, with everything on the device: one {self.origin}. Bounding volumes have k = 18 planes (6 make a box); *density* is the bodies' volume over that of their box.
 Tiled is {span(map(lead, self.scenes))} times as fast as the best other method; brackets are 95 % intervals. In {sum(self.right)} of {len(self.right)} cells (method, scene, k = 8 or 18), pairs and contacts equal the reference's,
 bit for bit. With vertices rounded to single precision, no colliding pair is missed: this is [proved](algorithms/bounds/README.md), and [tested](docs/user/accuracy.md) against the exact truth.
 
