@@ -194,12 +194,14 @@ that were tested on both cards, {changed} have another verdict there."""
         grouped = [paired(at(scene, "fair"), at(scene, "chunked")) for scene in self.scenes]
         schedule = [paired(at(scene, "fair"), at(scene, "paper")) for scene in self.scenes]
         low, high = claimed()
+        cells = f"{len(self.right)} cells of [the record](results/h200/plan.jsonl)"
+        right = f"In all {cells}," if all(self.right) else f"In {sum(self.right)} of {cells},"
         return f"""\
-Milliseconds per frame, contacts included, with everything on the device: one {self.origin}. Bounding volumes have k = 18 planes (6 make a box); *density* is the bodies' volume over that of their box.
+Milliseconds per frame, contacts included, with everything on the device: one {self.origin.partition(" of ")[0]}. Bounding volumes have k = 18 planes (6 make a box); *density* is the bodies' volume over that of their box.
 
 {self._medians()}
 
-Tiled is {span(map(lead, self.scenes))} times as fast as the best other method; brackets are 95 % intervals. In {sum(self.right)} of {len(self.right)} cells (method, scene, k = 8 or 18), pairs and contacts equal the reference's,
+Tiled is {ends([lead(scene).value for scene in self.scenes])} times as fast as the best other method ([intervals](results/h200/README.md)). {right} pairs and contacts equal the reference's,
 bit for bit. With vertices rounded to single precision, no colliding pair is missed: this is [proved](algorithms/bounds/README.md), and [tested](docs/user/accuracy.md) against the exact truth.
 
 **The paper** reports that chunks take {low:.0f} to {high:.0f} times less time than gProximity. Most of that factor is gProximity's uploads of nearly empty queues. Against our gProximity, without these uploads and with all body pairs at once, the paper's schedule
@@ -212,7 +214,7 @@ bit for bit. With vertices rounded to single precision, no colliding pair is mis
             rows = [row for row in csv.DictReader(file) if row["value"]]
         of_claim = lambda claim: [float(row["value"]) for row in rows if row["claim"] == claim]
         at = lambda scene, method: self.cells[scene, "18", method]
-        of_plan = lambda method: [paired(at(s, "fair"), at(s, method)).value for s in self.scenes]
+        of_plan = lambda method: span(paired(at(s, "fair"), at(s, method)) for s in self.scenes)
         narrow, frame = "narrow phase as published", "whole frame, everything on the device, k = 18"
         return markdown.table(
             ["compared", "the paper's GPUs", "this GPU"],
@@ -223,8 +225,8 @@ bit for bit. With vertices rounded to single precision, no colliding pair is mis
                     ends(without_upload()),
                     ends(of_claim("narrow-small-array")),
                 ],
-                [f"{frame}: the paper's schedule", "", ends(of_plan("paper"))],
-                [f"{frame}: the grouped schedule", "", ends(of_plan("chunked"))],
+                [f"{frame}: the paper's schedule", "", of_plan("paper")],
+                [f"{frame}: the grouped schedule", "", of_plan("chunked")],
             ],
         ).rstrip("\n")
 
@@ -374,13 +376,14 @@ def span(ratios):
 
 def against_gproximity(ratios, noun):
     """One or two sentences on gProximity's times over those of a method: where it is faster, where slower."""
-    wins = [ratio for ratio in ratios if ratio.value >= 1]
-    loses = [inverse(ratio) for ratio in ratios if ratio.value < 1]
+    wins = [ratio.value for ratio in ratios if ratio.value >= 1]
+    loses = [inverse(ratio).value for ratio in ratios if ratio.value < 1]
     if not wins:
-        return f"takes {span(loses)} times as long as gProximity in all {len(loses)} {noun}."
+        return f"takes {ends(loses)} times as long as gProximity in all {noun}."
+    where = f"{len(wins)} of {len(ratios)} {noun}" if loses else f"all {noun}"
     others = "others" if len(loses) > 1 else "other"
-    rest = f" In the {others} it takes {span(loses)} times as long." if loses else ""
-    return f"is {span(wins)} times as fast as gProximity in {len(wins)} of {len(ratios)} {noun}.{rest}"
+    rest = f" In the {others} it takes {ends(loses)} times as long." if loses else ""
+    return f"is {ends(wins)} times as fast as gProximity in {where}.{rest}"
 
 
 if __name__ == "__main__":
