@@ -69,6 +69,14 @@ class History(ReportCase):
             cells = read_records([str(self.write("titles.jsonl", self.series(*factors)))]).cells
             self.assertRegex(shown_history(cells)[0]["cells"][0]["title"], f"^tiled {title}$")
 
+    def test_too_few_samples_show_neither_a_move_nor_that_there_is_none(self):
+        few = [self.record(name, factor, key="k") for name, factor in zip(NAMES, (1, 1.6))]
+        for times in (record["total_ns"] for record in few):
+            times["samples"], times["rounds"] = times["samples"][:2], times["rounds"][:2]
+        shown, [sentence] = shown_history(read_records([str(self.write("few.jsonl", few))]).cells)
+        self.assertRegex(shown["cells"][0]["title"], "may have moved over 2 commits$")
+        self.assertEqual(sentence, "Over 2 commits, none of 1 cells moved, and 1 may have.")
+
     def test_the_rule_is_that_of_compare(self):
         for factors in ((1, 1), (1, 1.02), (1, 1.2), (1.2, 1)):
             records = self.series(*factors)

@@ -109,11 +109,28 @@ def _change(point):
     return f"takes {digits(ratio.value)} times as long [{digits(ratio.low)}, {digits(ratio.high)}]"
 
 
+def _is_open(compared):
+    """Whether no move is shown, but the interval of the ratio, if there is one, has moves beyond the threshold."""
+    if compared.verdict in (*CHANGES, "within_threshold"):
+        return False
+    ratio, most = compared.ratio, 1 + compared.threshold
+    return ratio is None or ratio.low is None or ratio.low < 1 / most or ratio.high > most
+
+
+def _may_have_moved(points):
+    compared = [point.compared for point in points if point.compared is not None]
+    return not any(point.moved for point in points) and any(map(_is_open, compared))
+
+
 def _title(name, points, programs):
     moves = [f"{_change(point)} since {programs[point.program]}" for point in points if point.moved]
     if len(moves) > MAX_NAMED:
         return f"{name} moved {len(moves)} times; it {', then '.join(moves[-MAX_NAMED:])}"
-    return f"{name} {', then '.join(moves)}" if moves else f"{name} did not move over {len(points)} commits"
+    if moves:
+        return f"{name} {', then '.join(moves)}"
+    return (
+        f"{name} {'may have moved' if _may_have_moved(points) else 'did not move'} over {len(points)} commits"
+    )
 
 
 def _point(point):
@@ -137,8 +154,10 @@ def shown_history(cells):
     named = "".join(f" {titles[key]}." for key in moved[:MAX_NAMED]) + (
         " The chart has the others." if len(moved) > MAX_NAMED else ""
     )
+    unsure = sum(map(_may_have_moved, found.points.values()))
+    rest = f", and {unsure} may have" if unsure else ""
     sentence = (
-        f"Over {len(found.programs)} commits, {len(moved) or 'none'} of {len(keys)} cells moved.{named}"
+        f"Over {len(found.programs)} commits, {len(moved) or 'none'} of {len(keys)} cells moved{rest}.{named}"
     )
     return {
         "programs": found.programs,
