@@ -224,10 +224,11 @@ SettingTexts changes(const Cell& cell) {
     return changed;
 }
 
-std::string method_of(const Cell& cell) {
+std::string method_of(const Cell& cell, const SettingTexts& left_out) {
     if (!cell.candidates.empty()) return std::string(automatic);
     std::vector<std::string> changed;
-    for (const auto& [name, value] : changes(cell)) changed.push_back(fmt::format("{}={}", name, value));
+    for (const auto& [name, value] : changes(cell))
+        if (!left_out.contains(name)) changed.push_back(fmt::format("{}={}", name, value));
     return fmt::format("{}{}{}", title_of(*cell.algorithm, preset(*cell.algorithm, cell.preset)),
                        changed.empty() ? "" : " ", fmt::join(changed, ","));
 }

@@ -68,8 +68,8 @@ Cell make_cell(const Traversal& traversal, const Preset& preset, const SettingTe
 SettingTexts changes(const Cell& cell);
 
 /// The part of a cell's name that tables of one device need: "grouped schedule" (title_of), with the settings
-/// that differ from the preset after it; "auto" before auto has chosen.
-std::string method_of(const Cell& cell);
+/// that differ from the preset after it, except those of `left_out`; "auto" before auto has chosen.
+std::string method_of(const Cell& cell, const SettingTexts& left_out = {});
 
 /// The name of a cell in tables, messages and --filter: "grouped schedule on opencl:0", with the settings
 /// that differ from the preset before "on"; "auto on opencl:0" before auto has chosen.

@@ -79,6 +79,28 @@ class Terminal(Case):
                 self.assertRegex(text, place)
         self.assertRegex(text, r"\[\d+ %, 0:\d\d, 0:\d\d left\] ")
 
+    def test_settings_that_all_rows_have_stand_above_the_table(self):
+        words = (
+            "run",
+            *SMALL,
+            "--algorithm",
+            "tiled,chunked,embree",
+            "--set",
+            "contact_rule=none",
+            "--repeat",
+            1,
+        )
+        text = tandem(*words, "--set", "k=6")[1]
+        self.assertRegex(
+            text, "(?m)2 frames on host; contact_rule=none, k=6$"
+        )  # embree has k = 6 by its preset
+        self.assertEqual(
+            re.findall(r"(?m)^(\w[\w ]*\w)  +\d+\.\d+  ", text), ["tiled", "grouped schedule", "Embree"]
+        )
+        text = tandem("run", *SMALL, "--algorithm", "tiled", "--set", "k=6,8", "--repeat", 1)[1]
+        self.assertRegex(text, "(?m)2 frames on host$")
+        self.assertEqual(re.findall(r"(?m)^(tiled k=\d)  +\d", text), ["tiled k=6", "tiled k=8"])
+
     def test_dry_run_lists_the_keys_of_records(self):
         out = self.work / "keys.jsonl"
         words = (

@@ -49,6 +49,22 @@ bool on_one_group(std::span<const Row> rows) {
         rows, [&](const Row& row) { return row.cell->devices == rows.front().cell->devices; });
 }
 
+/// The settings that some row's name has and that are equal in all rows; none for a single row.
+SettingTexts common_settings(std::span<const Row> rows) {
+    SettingTexts common;
+    if (rows.size() < 2) return common;
+    for (const auto& row : rows)
+        for (const auto& change : changes(*row.cell)) {
+            const auto is_equal = [&](const Row& other) {
+                const auto texts = other.cell->settings.texts();
+                const auto found = texts.find(change.first);
+                return found != texts.end() && *found == change;
+            };
+            if (std::ranges::all_of(rows, is_equal)) common.insert(change);
+        }
+    return common;
+}
+
 std::vector<Stage> all_stages() {
     std::vector<Stage> stages;
     for (std::size_t i = 0; i < stage_names.size(); ++i) stages.push_back(static_cast<Stage>(i));
@@ -223,7 +239,7 @@ std::string counted(const std::string& count, std::string_view noun) {
     return fmt::format("{} {}", count, noun);
 }
 
-/// "5 rounds, 3.2 M pairs; 21 frames on host": what all rows have in common. Moves the other columns to
+/// "5 rounds, 3.2 M pairs; 21 frames on host; k=8": what all rows have in common. Moves the other columns to
 /// `differing`.
 std::string common_line(std::span<const Row> rows, std::vector<TableColumn> columns,
                         std::vector<TableColumn>& differing) {
@@ -236,9 +252,13 @@ std::string common_line(std::span<const Row> rows, std::vector<TableColumn> colu
             common.push_back(counted(text, column.head));
     }
     const auto frames = fmt::to_string(rows.front().measurement->candidate_pairs.size());
-    return fmt::format("{}{}{}{}", fmt::join(common, ", "), common.empty() ? "" : "; ",
+    std::vector<std::string> settings;
+    for (const auto& [name, value] : common_settings(rows))
+        settings.push_back(fmt::format("{}={}", name, value));
+    return fmt::format("{}{}{}{}{}{}", fmt::join(common, ", "), common.empty() ? "" : "; ",
                        counted(frames, "frames"),
-                       on_one_group(rows) ? " on " + name_of(rows.front().cell->devices) : "");
+                       on_one_group(rows) ? " on " + name_of(rows.front().cell->devices) : "",
+                       settings.empty() ? "" : "; ", fmt::join(settings, ", "));
 }
 
 std::string main_table(std::span<const Row> rows, const std::vector<Verdict>& verdicts, const Scene& scene,
@@ -321,7 +341,8 @@ std::string devices_table(const Row& row, TableFormat format) {
 } // namespace
 
 std::string label_of(const Row& row, std::span<const Row> rows) {
-    return on_one_group(rows) ? method_of(*row.cell) : describe(*row.cell);
+    const auto method = method_of(*row.cell, common_settings(rows));
+    return on_one_group(rows) ? method : fmt::format("{} on {}", method, name_of(row.cell->devices));
 }
 
 std::string result_tables(std::span<const Row> rows, const std::vector<Verdict>& verdicts, const Scene& scene,

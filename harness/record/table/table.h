@@ -16,7 +16,7 @@ struct TableStyle {
     std::vector<std::string> throughput{}; ///< names of further columns (throughput.h)
 };
 
-/// The name of a row among `rows`: without devices if all have the same.
+/// The name of a row among `rows`: without the devices and settings that all have. They stand above tables.
 std::string label_of(const Row& row, std::span<const Row> rows);
 
 /// A table of rows of one scene, below a line of what they have in common: medians in milliseconds per frame
