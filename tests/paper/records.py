@@ -5,7 +5,6 @@ import json
 
 from tandem.paper.quantities import resolved
 
-ROUNDS = 10
 FULL_STEPS = 500
 SCENE_KEYS = {
     "funnel": "recording:x,of=funnel:bodies=1@0",
