@@ -2,7 +2,8 @@
 """The names of methods and scenes that people read: in comparisons, reports, plots and pages. Needs only the
 standard library.
 
-names.json has the titles of methods, and the default parameters of scenes, which names leave out; scripts/schema writes it."""
+names.json has the titles of methods, and the default parameters of scenes, which names leave out; scripts/schema
+writes it."""
 
 import functools
 import json
