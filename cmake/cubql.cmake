@@ -29,10 +29,10 @@ function(tandem_cubql target folder)
   file(CONFIGURE OUTPUT ${out}/query_ptx.cpp @ONLY CONTENT [=[
 extern const char tandem_query_ptx[];
 __asm__(".pushsection .rodata\ntandem_query_ptx: .incbin \"@out@/query.ptx\"\n.byte 0\n.popsection\n");
-namespace tandem::cubql {
+namespace tandem::cubql_trees {
 extern const char* const query_ptx;
 const char* const query_ptx = tandem_query_ptx;
-} // namespace tandem::cubql
+} // namespace tandem::cubql_trees
 ]=])
   set_source_files_properties(${out}/query_ptx.cpp PROPERTIES OBJECT_DEPENDS ${out}/query.ptx)
   target_sources(${target} PRIVATE ${out}/query_ptx.cpp ${out}/build.o)

@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Replaces cubql_*.cpp and their dependencies if CMake finds no cuBQL or no CUDA compiler.
-#include "algorithms/baselines/cubql/cubql_stages.h"
+// Replaces build.cu and query.cu if CMake finds no cuBQL or no CUDA compiler. The rest always compiles.
+#include "algorithms/baselines/cubql/build.h"
 
 #include <stdexcept>
 
-namespace tandem {
+namespace tandem::cubql_trees {
 
-std::string_view cubql_absence() {
-    return "this program was built without cuBQL; clone github.com/NVIDIA/cuBQL, then configure with "
-           "-DCUBQL_INCLUDE_DIR=<clone> on a machine with nvcc and build again";
+const char* const query_ptx = "";
+
+Tree build(int, const std::vector<Box>&, int) {
+    throw std::logic_error("cubql_trees::build() called in a program without cuBQL");
 }
 
-AlgorithmStages cubql_stages(const BuildContext&) {
-    throw std::logic_error("cubql_stages() called in a program without cuBQL");
-}
-
-} // namespace tandem
+} // namespace tandem::cubql_trees

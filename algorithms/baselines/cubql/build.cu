@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace tandem::cubql {
+namespace tandem::cubql_trees {
 
 namespace {
 
@@ -47,4 +47,4 @@ Tree build(int device, const std::vector<Box>& boxes, int leaf_size) {
     return tree;
 }
 
-} // namespace tandem::cubql
+} // namespace tandem::cubql_trees

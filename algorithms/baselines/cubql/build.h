@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace tandem::cubql {
+namespace tandem::cubql_trees {
 
 /// A box; the layout of cuBQL's box3f.
 struct Box {
@@ -44,7 +44,7 @@ struct Tree {
 /// most `leaf_size` boxes. Throws std::runtime_error with CUDA's message.
 Tree build(int device, const std::vector<Box>& boxes, int leaf_size);
 
-/// PTX of query.cu, made when the project was built.
+/// PTX of query.cu, made when the project was built; empty in a program without cuBQL.
 extern const char* const query_ptx;
 
-} // namespace tandem::cubql
+} // namespace tandem::cubql_trees

@@ -19,16 +19,16 @@ constexpr std::uint32_t no_node = ~0u;
 
 /// A mesh's tree, and the first of its rows in the table of orders.
 struct MeshTree {
-    cubql::Tree tree;
+    cubql_trees::Tree tree;
     std::vector<std::uint32_t> parents; ///< by node; no_node for the root and nodes that are not used
     std::uint32_t first_of_order = 0;
 };
 
 /// Boxes of a mesh's tetrahedra at its vertices in the scene, in the order of the device.
-std::vector<cubql::Box> boxes_of(const Mesh& mesh, const OrderedMesh& ordered) {
-    std::vector<cubql::Box> boxes;
+std::vector<cubql_trees::Box> boxes_of(const Mesh& mesh, const OrderedMesh& ordered) {
+    std::vector<cubql_trees::Box> boxes;
     for (const auto id : ordered.ids) {
-        cubql::Box box;
+        cubql_trees::Box box;
         box.lower.fill(std::numeric_limits<float>::max());
         box.upper.fill(std::numeric_limits<float>::lowest());
         for (const auto vertex : mesh.tetrahedra[id])
@@ -43,14 +43,14 @@ std::vector<cubql::Box> boxes_of(const Mesh& mesh, const OrderedMesh& ordered) {
     return boxes;
 }
 
-std::vector<std::uint32_t> parents_of(const cubql::Tree& tree) {
+std::vector<std::uint32_t> parents_of(const cubql_trees::Tree& tree) {
     std::vector<std::uint32_t> parents(tree.nodes.size(), no_node);
     std::vector<std::uint32_t> open{0};
     while (!open.empty()) {
         const auto node = open.back();
         open.pop_back();
-        if (cubql::tetrahedra_of(tree.nodes[node]) != 0) continue;
-        const auto child = cubql::first_child(tree.nodes[node]);
+        if (cubql_trees::tetrahedra_of(tree.nodes[node]) != 0) continue;
+        const auto child = cubql_trees::first_child(tree.nodes[node]);
         parents[child] = parents[child + 1] = node;
         open.push_back(child);
         open.push_back(child + 1);
@@ -58,11 +58,11 @@ std::vector<std::uint32_t> parents_of(const cubql::Tree& tree) {
     return parents;
 }
 
-MeshTree mesh_tree(const DeviceInfo& info, const std::vector<cubql::Box>& boxes) {
+MeshTree mesh_tree(const DeviceInfo& info, const std::vector<cubql_trees::Box>& boxes) {
     MeshTree made;
     if (boxes.empty()) return made;
     try {
-        made.tree = cubql::build(std::stoi(info.id.substr(info.id.find(':') + 1)), boxes, leaf_size);
+        made.tree = cubql_trees::build(std::stoi(info.id.substr(info.id.find(':') + 1)), boxes, leaf_size);
     } catch (const std::runtime_error& error) {
         throw DeviceError(fmt::format("{} ({}): {}", info.id, info.name, error.what()));
     }
@@ -74,20 +74,20 @@ MeshTree mesh_tree(const DeviceInfo& info, const std::vector<cubql::Box>& boxes)
 } // namespace
 
 const KernelSource& cubql_kernels() {
-    static const KernelSource source{"algorithms/baselines/cubql/query.ptx", cubql::query_ptx};
+    static const KernelSource source{"algorithms/baselines/cubql/query.ptx", cubql_trees::query_ptx};
     return source;
 }
 
 CubqlTrees::CubqlTrees(const BuildContext& context)
     : device_(context.device),
-      tiles_(context.bodies, Slabs::all, context.shape.group_size, 1),
+      tiles_(context.bodies, Slabs::all, SelfPairs::off, context.shape.group_size, 1),
       groups_(32 * device_.info().compute_units),
       slot_count_(tiles_.first_upper() * TileShapes::lanes) {
     if (bodies().pair_layout() != PairLayout::slots)
         throw DeviceError(
             fmt::format("{}: algorithm cubql numbers the scene's tetrahedra in 32 bits", device_.info().id));
     upload_trees(context);
-    boxes_ = device_.allocate(slot_count_ * sizeof(cubql::Box), "cuBQL's boxes");
+    boxes_ = device_.allocate(slot_count_ * sizeof(cubql_trees::Box), "cuBQL's boxes");
     ready_ = device_.allocate(std::max(1u, node_count_) * sizeof(std::uint32_t), "cuBQL's ready nodes");
     const StageScope scope(device_, Stage::write);
     device_.clear(ready_, ready_.bytes());
@@ -99,8 +99,8 @@ CubqlTrees::CubqlTrees(const BuildContext& context)
 void CubqlTrees::upload_trees(const BuildContext& context) {
     std::map<std::size_t, MeshTree> by_mesh;
     std::vector<std::uint32_t> order, parents, node_bodies;
-    std::vector<cubql::Node> nodes;
-    std::vector<cubql::TreeRow> table;
+    std::vector<cubql_trees::Node> nodes;
+    std::vector<cubql_trees::TreeRow> table;
     for (std::uint32_t body = 0; body < bodies().count(); ++body) {
         const auto number = context.scene.bodies[body].mesh;
         auto found = by_mesh.find(number);

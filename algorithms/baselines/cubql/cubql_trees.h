@@ -18,10 +18,10 @@ public:
     explicit CubqlTrees(const BuildContext& context);
 
     const Bodies& bodies() const { return tiles_.bodies(); }
-    const Buffer& tree_nodes() const { return nodes_; } ///< cubql::Node, one tree after the other
-    const Buffer& tree_table() const { return table_; } ///< cubql::TreeRow by body
+    const Buffer& tree_nodes() const { return nodes_; } ///< cubql_trees::Node, one tree after the other
+    const Buffer& tree_table() const { return table_; } ///< cubql_trees::TreeRow by body
     const Buffer& order() const { return order_; }      ///< tetrahedra by leaf, one mesh after the other
-    const Buffer& boxes() const { return boxes_; }      ///< cubql::Box by slot
+    const Buffer& boxes() const { return boxes_; }      ///< cubql_trees::Box by slot
 
     /// Work-items of a group in all kernels of query.cu.
     static constexpr std::uint32_t group_size = 128;

@@ -12,7 +12,7 @@
 
 using Box = cuBQL::box3f;
 using Node = cuBQL::bvh3f::Node;
-using tandem::cubql::TreeRow;
+using tandem::cubql_trees::TreeRow;
 
 /// Adds 1 for each calling lane of a warp, with one atomic operation; returns the lane's previous value.
 __device__ std::uint32_t next_row(std::uint32_t* counter) {
