@@ -25,8 +25,10 @@ class Tables(ScriptCase):
         return {row[0]: tuple(row[column] for column in columns) for row in cells}
 
     def test_launches_are_counted_as_in_the_paper_too(self):
-        """A frame of plates has three launches in the paper's Table 5: 306 in 102 frames."""
-        records = cells_of_plates("paper/records/cells-plates")
+        """A frame of plates has three launches in the paper's Table 5: 306 in 102 frames. Ours are 92 of them."""
+        records = [
+            one for one in cells_of_plates("paper/records/cells-plates") if one["frames"]["first"] == 30
+        ]
         header, *rows = rows_of(self.table(*records))
         ratio = next(row for row in rows if row[0] == "gProximity published / chunked published")
         of = self.counted(header, rows)
@@ -45,10 +47,10 @@ class Tables(ScriptCase):
         times = {kernel: value["launches"] for kernel, value in published["kernel_times"].items()}
         self.assertEqual(times["plan_balance"], times["traverse_queues"])
         (gproximity,) = (value for name, value in of.items() if name.startswith("gProximity published"))
-        self.assertEqual(gproximity[1], f"{2 + 2 * times['traverse_queues'] / 102:.0f}")
+        self.assertEqual(gproximity[1], f"{2 + 2 * times['traverse_queues'] / 92:.0f}")
         ours = sum(stage["launches"] for stage in published["stages"].values())
         self.assertEqual(
-            ratio[-2:], [f"{ours / 408:.1f}", f"{(2 + 2 * times['traverse_queues'] / 102) / 3:.1f}"]
+            ratio[-2:], [f"{ours / (4 * 92):.1f}", f"{(2 + 2 * times['traverse_queues'] / 92) / 3:.1f}"]
         )
         header, *rows = rows_of(self.table(*cells_of_plates("plan")))
         of = self.counted(header, rows)
