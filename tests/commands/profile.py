@@ -45,7 +45,7 @@ class Profile(Case):
             f"--truth none --no-check --out {recorded}"
         )
         assert (status, errors) == (0, []), (text, errors)
-        other = json.loads((SOURCE / "results/h200/ceilings.jsonl").read_text().splitlines()[0])
+        other = json.loads((SOURCE / "tests/records/ceilings.jsonl").read_text().splitlines()[0])
         devices = [record["devices"][0] for record in cells_of(recorded.read_text())]
         known = ({**other, "device": one, "launch_timed_s": other["launch_queued_s"]} for one in devices)
         cls.known.write_text("".join(json.dumps(line) + "\n" for line in known))

@@ -233,7 +233,7 @@ class Compare(Case):
         newer["schema"], older["schema"] = 5, 1
         less = record()
         del less["devices"]
-        ceilings = SOURCE / "results/h200/ceilings.jsonl"
+        ceilings = SOURCE / "tests/records/ceilings.jsonl"
         for path, words in (
             (self.work / "none.jsonl", "cannot be read"),
             (folder, "is a folder"),

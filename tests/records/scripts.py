@@ -244,7 +244,7 @@ class Scripts(ScriptCase):
             "--out",
             profile,
             "--ceilings",
-            SOURCE / "results/h200/ceilings.jsonl",
+            SOURCE / "tests/records/ceilings.jsonl",
             *sets(
                 {name: SMALL[name] for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity")}
             ),
@@ -254,7 +254,7 @@ class Scripts(ScriptCase):
         text = self.output_of(
             "tables",
             profile,
-            SOURCE / "results/h200/ceilings.jsonl",
+            SOURCE / "tests/records/ceilings.jsonl",
             self.file("simulation.jsonl", [*steps, *steps[:5]]),
         )
         rows = {row[0]: row for row in rows_of(text)}

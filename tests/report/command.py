@@ -27,7 +27,7 @@ class Commands(Case):
     """The part of both commands that concerns the scene, which another process of the program exports."""
 
     def test_errors_of_the_export_are_the_only_line(self):
-        ceilings, out = H200 / "ceilings.jsonl", self.work / "none.html"
+        ceilings, out = H200 / "paper/records/ceilings.jsonl", self.work / "none.html"
         for error, words in (
             ("the nearest is 'plates'", "view plats"),
             ("no scene; name one", "view"),

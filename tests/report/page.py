@@ -60,7 +60,7 @@ class Pages(ReportCase):
             RECORDS / "paper/records/thresholds.jsonl",
             SOURCE / "tests/records/accuracy.jsonl",
         )
-        others = RECORDS / "profile.jsonl", RECORDS / "ceilings.jsonl"
+        others = RECORDS / "profile.jsonl", SOURCE / "tests/records/ceilings.jsonl"
         shown = self.shown(*cells, *others, *simulations, "--scene", "plates", "--frames", "20:23")
         keys = {record["key"] for path in cells for record in cells_of(path.read_text())}
         self.assertEqual(len(of_column(shown.rows, "cell")), len(keys))  # one of each continued cell
@@ -87,9 +87,9 @@ class Pages(ReportCase):
         self.browser.ask("Emulation.setEmulatedMedia", media="")
 
     def test_tables_fit_1400_pixels_and_are_cards_on_a_phone(self):
-        files = [RECORDS / f"{name}.jsonl" for name in ("plan", "profile", "ceilings")]
+        own = [SOURCE / f"tests/records/{name}.jsonl" for name in ("accuracy", "ceilings")]
         page = self.report(
-            *files, SOURCE / "tests/records/accuracy.jsonl", "--scene", "plates", "--frames", 20
+            RECORDS / "plan.jsonl", RECORDS / "profile.jsonl", *own, "--scene", "plates", "--frames", 20
         )
         field = "getComputedStyle(document.querySelector('.sorts td:nth-child(2)'), '{}').{}"
         for width, display, content in ((1400, "table-cell", "none"), (390, "block", '"ms per frame"')):
