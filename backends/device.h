@@ -170,7 +170,8 @@ public:
     Clocks clocks() const { return clocks_; } ///< off in a new device
 
     /// Sets the number of threads that run the work-groups of a launch on the host; 0, the default: one per
-    /// core. Results do not depend on it. Other devices ignore it.
+    /// core. Results do not depend on it. Other devices ignore it. Throws InputError for more than
+    /// most_threads (base/parallel.h).
     void set_threads(std::uint32_t threads) { do_set_threads(threads); }
 
     /// Each later launch first calls `check`, unless it is empty. What it throws ends the frame.

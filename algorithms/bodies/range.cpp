@@ -34,6 +34,8 @@ void check_body(const Scene& scene, const Frame& frame, Precision precision, std
                 double mesh_size) {
     const bool is_deformable = scene.bodies[body].deformable;
     if (is_deformable) check_finite(frame.deformed[body], body);
+    if (!frame.poses[body].translation.allFinite())
+        throw InputError(fmt::format("body {} has a position that is not finite; repair the frame", body));
     const double size = is_deformable ? largest(frame.deformed[body]) : mesh_size;
     const double reach = std::max(size, largest(frame.poses[body].translation));
     const double limit = largest_coordinate(precision);

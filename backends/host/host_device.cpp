@@ -2,7 +2,9 @@
 #include "backends/host/host_device.h"
 
 #include "backends/host/dialect.h"
+#include "base/error.h"
 #include "base/fork_join.h"
+#include "base/parallel.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -165,6 +167,9 @@ private:
     int threads() const { return arena_.max_concurrency(); }
 
     void do_set_threads(std::uint32_t threads) override {
+        if (threads > most_threads)
+            throw InputError(
+                fmt::format("host: {} threads are more than {}; give fewer", threads, most_threads));
         const auto wanted = threads == 0 ? tbb::info::default_concurrency() : static_cast<int>(threads);
         if (wanted == this->threads()) return;
         arena_.terminate();

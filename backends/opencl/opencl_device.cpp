@@ -6,6 +6,7 @@
 #include "backends/opencl/drivers.h"
 #include "backends/opencl/programs.h"
 #include "backends/opencl/queue.h"
+#include "base/error.h"
 
 #include <array>
 #include <fmt/format.h>
@@ -240,7 +241,28 @@ BackendReport discover() {
     return found;
 }
 
+namespace {
+
+/// Throws InputError unless commands of the queue, which must be of this context, run one after the other.
+void check_adopted(cl_context context, cl_device_id device, cl_command_queue queue) {
+    if (context == nullptr || device == nullptr || queue == nullptr)
+        throw InputError("opencl::adopt: a null context, device or queue; give the application's");
+    cl_command_queue_properties properties = 0;
+    cl_context own = nullptr;
+    if (clGetCommandQueueInfo(queue, CL_QUEUE_PROPERTIES, sizeof properties, &properties, nullptr)
+            != CL_SUCCESS
+        || clGetCommandQueueInfo(queue, CL_QUEUE_CONTEXT, sizeof(void*), &own, nullptr) != CL_SUCCESS)
+        throw InputError("opencl::adopt: not a command queue; give the application's");
+    if (own != context) throw InputError("opencl::adopt: the queue is of another context; give its own");
+    if ((properties & CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE) != 0)
+        throw InputError("opencl::adopt: the queue is out-of-order; give an in-order one");
+}
+
+} // namespace
+
 std::unique_ptr<Device> adopt(void* context, void* device, void* queue) {
+    check_adopted(static_cast<cl_context>(context), static_cast<cl_device_id>(device),
+                  static_cast<cl_command_queue>(queue));
     return std::make_unique<OpenclDevice>(static_cast<cl_context>(context), static_cast<cl_device_id>(device),
                                           static_cast<cl_command_queue>(queue));
 }

@@ -10,7 +10,8 @@ namespace tandem::opencl {
 BackendReport discover();
 
 /// A device over a host application's cl_context, cl_device_id and in-order cl_command_queue, which must
-/// outlive it. Timestamps work only if that queue was created with profiling.
+/// outlive it. Throws InputError for another queue or a null pointer. Timestamps work only if that queue was
+/// created with profiling.
 std::unique_ptr<Device> adopt(void* context, void* device, void* queue);
 
 } // namespace tandem::opencl

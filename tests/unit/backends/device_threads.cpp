@@ -4,6 +4,8 @@
 #include "algorithms/kernels/status.clh"
 #include "algorithms/kernels/sources.h"
 #include "backends/host/host_device.h"
+#include "base/error.h"
+#include "base/parallel.h"
 #include "tests/unit/backends/device_support.h"
 
 #include <barrier>
@@ -111,6 +113,12 @@ std::size_t wrong_at_once(const First& first, const Second& second) {
     const auto wrong_first = run(first);
     other.join();
     return wrong_first + wrong_second;
+}
+
+TEST(DeviceThreads, TooManyAreRefused) {
+    const auto device = host::make_device();
+    device->set_threads(most_threads);
+    EXPECT_THROW(device->set_threads(most_threads + 1), InputError);
 }
 
 TEST(DeviceThreads, HostDevicesAreIndependent) {
