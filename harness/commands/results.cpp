@@ -74,7 +74,8 @@ void print_results(std::span<const Row> rows, const std::vector<Verdict>& verdic
     print_notes(measured, task.scene);
     std::vector<std::string> names;
     for (const auto& row : rows) names.push_back(label_of(row, rows));
-    for (const auto& verdict : verdicts) put_paragraph(verdict_sentence(verdict, rows, names));
+    for (const auto& verdict : verdicts)
+        put_paragraph(verdict_scope(verdict, verdicts, rows) + verdict_sentence(verdict, rows, names));
 }
 
 } // namespace tandem

@@ -175,7 +175,10 @@ int Run::end(int code) {
     if (records_->left_out() > 0)
         put("{} cells are already in {}{}\n", records_->left_out(), options_.out,
             lacks_dump ? "; no dump is written: run again without --resume" : "");
-    if (!options_.out.empty()) put("{} records appended to {}\n", file.appended() - verdicts_, options_.out);
+    if (!options_.out.empty()) {
+        const auto count = file.appended() - verdicts_;
+        put("{} record{} appended to {}\n", count, count == 1 ? "" : "s", options_.out);
+    }
     if (!interrupted_ && !file.failed()) records_->unfinished().remove();
     if (!interrupted_ || file.failed()) return code;
     const bool can_resume = !options_.out.empty() && !dump_ended_;

@@ -7,6 +7,7 @@
 #include "harness/plans/rank_team.h"
 
 #include <array>
+#include <fmt/format.h>
 
 namespace tandem {
 
@@ -43,6 +44,8 @@ RunGroups::RunGroups(const RunOptions& options, RankTeam* team) : options_(optio
         };
         all_ = make_groups(plan, choose, options_.shard);
         keep_matching(all_, options_.filter, options_.shard);
+        if (all_.groups.empty() && !all_.impossible.empty() && options_.shard.of <= 1)
+            throw InputError(fmt::format("no cell is possible: {}", all_.impossible.begin()->first));
         print_left_out(all_);
         if (options_.shard.of > 1)
             put("shard {}/{}: {} of {} groups\n", options_.shard.index, options_.shard.of, all_.groups.size(),

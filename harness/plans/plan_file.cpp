@@ -55,7 +55,10 @@ Texts expanded(const Texts& values, const JsonLocation& location) {
 void read_sets(const Json& json, const JsonLocation& location, Request& request) {
     if (!json.is_object()) location.fail("must be an object: a value, or a list of them, for each setting");
     for (const auto& [name, value] : json.items()) {
-        std::erase_if(request.sets, [&name = name](const auto& set) { return set.first == name; });
+        const auto removed =
+            std::erase_if(request.sets, [&name = name](const auto& set) { return set.first == name; });
+        if (value.is_null() && removed == 0)
+            (location / name).fail("is null, but the plan has no such setting to remove");
         if (!value.is_null())
             request.sets.emplace_back(name, expanded(scalars(value, location / name), location / name));
     }

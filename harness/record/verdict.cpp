@@ -179,6 +179,26 @@ std::string verdict_sentence(const Verdict& verdict, std::span<const Row> rows,
     return text + ".";
 }
 
+std::string verdict_scope(const Verdict& verdict, std::span<const Verdict> all, std::span<const Row> rows) {
+    const auto first = [&](const Verdict& one) -> const Row& { return rows[one.cells.front().row]; };
+    const auto differs = [&](const auto& of) {
+        return std::ranges::any_of(all,
+                                   [&](const Verdict& one) { return of(first(one)) != of(first(verdict)); });
+    };
+    std::vector<std::string> settings;
+    for (const auto* name : compared_settings) {
+        const auto value = [&](const Row& row) {
+            const auto texts = row.measurement->settings.texts();
+            const auto found = texts.find(name);
+            return found == texts.end() ? std::string() : found->second;
+        };
+        if (differs(value)) settings.push_back(fmt::format("{}={}", name, value(first(verdict))));
+    }
+    const auto devices = [](const Row& row) { return name_of(row.cell->devices); };
+    if (differs(devices)) settings.push_back(devices(first(verdict)));
+    return settings.empty() ? std::string() : fmt::format("{}: ", fmt::join(settings, ", "));
+}
+
 } // namespace tandem
 
 namespace tandem::record_parts {

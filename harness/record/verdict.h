@@ -58,6 +58,10 @@ std::vector<Verdict> verdicts_of(std::span<const Row> rows);
 std::string verdict_sentence(const Verdict& verdict, std::span<const Row> rows,
                              std::span<const std::string> labels);
 
+/// What tells the cells of a verdict from those of the others, "k=8, host: ", because cells with different
+/// bounds are not compared with each other; empty for a single verdict.
+std::string verdict_scope(const Verdict& verdict, std::span<const Verdict> all, std::span<const Row> rows);
+
 /// The line of results/verdict.schema.json. `rows` have keys.
 nlohmann::ordered_json verdict_record(const Verdict& verdict, std::span<const Row> rows, const Scene& scene,
                                       const FrameRange& range);

@@ -246,7 +246,9 @@ int simulate_command(const SimulateOptions& options) {
     const auto last = options.steps > 0 ? options.steps : scene.dynamics->steps;
     put("scene {}: {} bodies, {} vertices, {} tetrahedra; {}\n", scene.key, scene.bodies.size(),
         vertex_count(scene), tetrahedron_count(scene), describe(cell));
-    if (simulation.steps_done() > 0) put("continues after step {}\n", simulation.steps_done());
+    if (simulation.steps_done() > 0)
+        put("continues after step {}{}\n", simulation.steps_done(),
+            simulation.steps_done() >= last ? ": all steps are done, none is simulated" : "");
     RunTotals totals;
     totals.session = session.number();
     run_and_record(options, last, cell, scene, simulation, {session, file, totals});

@@ -225,7 +225,7 @@ std::vector<Motion> read_bodies(const Json& json, const JsonLocation& root, Scen
 } // namespace
 
 Scene load_description(const std::string& path, const MeshReading& reading) {
-    const auto json = read_json(path, "scene description");
+    const auto json = read_json(path, "scene description or plan");
     if (json.is_object() && json.contains("plan"))
         throw InputError(fmt::format("{}: is a plan, not a scene; give it to 'tandem run'", path));
     const JsonLocation root{path, {}};

@@ -30,6 +30,14 @@ the nearest is 'chunked'                            | check plates --algorithm c
 goes with rounding=safe                             | run plates --set placement=exact --set rounding=nearest
 --pose                                              | run --mesh {good} --pose '0 0 0 1 0 0 0' --pose '0 0 0 1 0 0 0'
 exclude                                             | run plates --mesh {good}
+--memory: give bytes such as 4096, 512MB or 1.5GiB; see 'tandem run --help' | run plates --memory -5
+--memory: give bytes                                | run plates --memory 0
+--memory: give bytes                                | run plates --memory 99999999999999999999
+--memory: give bytes                                | run plates --memory 4XB
+--memory: give bytes                                | run plates --memory 1e6
+--seconds: give seconds from 0.001                  | run plates --seconds nan
+--timeout: give seconds from 0.001                  | run plates --isolate --timeout nan
+--choose-seconds: give seconds from 0.001           | run plates --algorithm auto --choose-seconds nan
 scene                                               | run
 --set                                               | run plates --set k
 --help                                              | run plates --nonsense

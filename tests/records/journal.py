@@ -119,7 +119,7 @@ class Journal(Case):
         self.assertEqual((status, len(errors)), (3, 1), (text, errors))
         self.assertIn("writing failed (File too large)", errors[0])
         self.assertEqual(right_cells(text), 2, text)
-        self.assertIn(f"1 records appended to {out}", text)
+        self.assertIn(f"1 record appended to {out}", text)
         self.assertEqual([r["settings"]["k"] for r in self.whole(out)], ["6"])
 
     def test_a_dump_at_its_limit_keeps_the_table(self):
@@ -273,7 +273,7 @@ class Journal(Case):
         lines = both.read_text().splitlines()
         self.assertTrue(lines[0].startswith("scene "), lines[0])
         self.assertEqual([json.loads(line)["status"] for line in lines if line.startswith("{")], ["ok"])
-        self.assertEqual(lines[-1], "1 records appended to /dev/stdout")
+        self.assertEqual(lines[-1], "1 record appended to /dev/stdout")
 
     def test_a_resumed_simulation_records_no_step_twice(self):
         record, frames = self.work / "simulation.jsonl", self.work / "resumed.frames"

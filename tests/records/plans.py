@@ -114,6 +114,8 @@ class Plans(PlanCase):
         self.bad("goes with sizes=own, batch=0", "run", self.plan(**fields), "--dry-run")
         cells = self.listed(self.plan(**fields, impossible="skip"))
         self.assertEqual([cell[0] for cell in cells], ["gproximity", "tiled"])
+        none = self.plan(scenes=SMALL, algorithms="tiled", settings={"k": 5}, impossible="skip")
+        self.bad("no cell is possible: setting k=5 is impossible", "run", none, "--dry-run")
         self.assertIn("skipped 1 impossible combination: ", self.errors[0])
         far = {"meshes": {"box": {"box": [1e37, 1e37, 1e37]}}, "bodies": [{"mesh": "box"}, {"mesh": "box"}]}
         (self.work / "far.json").write_text(json.dumps(far))
@@ -192,6 +194,7 @@ class Plans(PlanCase):
         self.refused(["/exclude/0", "matches every cell"], exclude=[{}])
         self.refused(["/settings/k", "never ends"], settings={"k": "18..8"}, schema_agrees=False)
         self.refused(["/settings/k/1", "must be a string or a number"], settings={"k": [8, True]})
+        self.refused(["/settings/k", "no such setting to remove"], settings={"k": None}, schema_agrees=False)
         self.refused(["/impossible", "'refuse'"], impossible="refuses")
         self.refused(["/plan", "must be a string"], plan=3)
         self.refused(["/measure", "--noise"], measure={"noise": "much"}, schema_agrees=False)

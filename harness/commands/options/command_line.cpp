@@ -144,7 +144,10 @@ Action read_command_line(int argc, const char* const* argv) {
         return print(text.ends_with('\n') ? text : text + '\n');
     } catch (const CLI::ParseError& error) {
         const auto unknown = unknown_word(*app, words);
-        throw InputError(unknown.empty() ? fmt::format("{}; see 'tandem --help'", error.what()) : unknown);
+        const auto given = app->get_subcommands();
+        const auto command = given.empty() ? std::string() : given.front()->get_name() + " ";
+        throw InputError(unknown.empty() ? fmt::format("{}; see 'tandem {}--help'", error.what(), command)
+                                         : unknown);
     }
     const auto given =
         std::ranges::find_if(actions, [](const auto& action) { return action.first->parsed(); });

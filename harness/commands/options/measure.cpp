@@ -31,7 +31,7 @@ void add_choosing(CLI::App& app, RunOptions& options) {
     app.add_option("--choose-seconds", options.choose_seconds,
                    "auto: limit of the replays that choose for a cell, in seconds; preparing candidates may "
                    "take six times as long (default: 10)")
-        ->check(CLI::Range(0.001, 86400.0))
+        ->check(seconds_up_to(86400))
         ->option_text("SECONDS");
     app.add_flag("--choose-afresh", options.choose_afresh,
                  "auto: choose again instead of reading a stored choice ($TANDEM_KERNEL_CACHE, or "
@@ -63,7 +63,7 @@ void add_accuracy_run_options(CLI::App& app, RunOptions& options) {
     add_run_options(app, options);
     app.remove_option(app.get_option("--truth"));
     app.get_option("--algorithm")
-        ->description("algorithms, or all (see 'tandem algorithms'; default: chunked)");
+        ->description("algorithms, or all (see 'tandem algorithms'; default: tiled)");
     app.get_option("--frames")->description("the first and the last frame (default: ten in the middle)");
     app.get_option("--set")->description(
         "values of a setting, each makes a cell (default: sweeps of k, precision and rounding, then of "
@@ -161,7 +161,7 @@ void add_processes(CLI::App& app, RunOptions& options) {
         "only, and differences between processes are part of the noise");
     auto* timeout = app.add_option("--timeout", options.timeout,
                                    "--isolate: seconds after which a process is ended (default: no limit)");
-    timeout->needs(isolate)->check(CLI::Range(0.001, 1e7))->option_text("SECONDS");
+    timeout->needs(isolate)->check(seconds_up_to(1e7))->option_text("SECONDS");
     app.add_option_function<std::string>(
            "--shard", [&options](const std::string& text) { options.shard = parse_shard(text); },
            "I/N: only the groups of a plan (a scene with its frames) whose number from 0 modulo N is I; "

@@ -8,11 +8,33 @@
 #include "harness/plans/device_groups.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace tandem {
 
 namespace {
+
+/// Turns "1.5GiB" into its number of bytes.
+const CLI::Validator bytes(
+    [](std::string& text) -> std::string {
+        static constexpr std::string_view units = "KMGT";
+        const auto digits = text.find_first_not_of("0123456789.");
+        auto unit = text.substr(std::min(digits, text.size()));
+        double value = 0;
+        if (!unit.empty() && std::toupper(unit.back()) == 'B') unit.pop_back();
+        if (unit.size() == 2 && unit.back() == 'i') unit.pop_back();
+        const auto power = unit.empty() ? -1 : static_cast<int>(units.find(std::toupper(unit.front())));
+        const bool known = unit.empty() || (unit.size() == 1 && power < 4 && power >= 0);
+        if (!known || !CLI::detail::lexical_cast(text.substr(0, digits), value)) value = 0;
+        value = std::ldexp(value, 10 * (power + 1));
+        if (!(value >= 1 && value < 0x1p63)) return "give bytes such as 4096, 512MB or 1.5GiB";
+        text = fmt::to_string(static_cast<std::uint64_t>(value));
+        return {};
+    },
+    "BYTES");
 
 TruthAmount parse_truth(const std::string& text) {
     if (text == "none") return TruthAmount::none;
@@ -87,11 +109,11 @@ void add_machine(CLI::App& app, RunOptions& options) {
            "number of threads of device host, as --set threads=N (default: one for each core)")
         ->check(CLI::Range(0, 4096))
         ->option_text("N");
-    app.add_option(
-           "--memory", options.memory,
-           "limit of device memory in bytes (4096, 512MB, 2GiB); frames that need more run in batches "
-           "(default: no limit)")
-        ->transform(CLI::AsSizeValue(false))
+    app.add_option("--memory", options.memory,
+                   "limit of device memory in bytes (4096, 512MB, 1.5GiB: powers of 1024); frames that need "
+                   "more run in batches "
+                   "(default: no limit)")
+        ->transform(bytes)
         ->option_text("BYTES");
 }
 
@@ -109,6 +131,15 @@ const CLI::Validator fraction(
     "FRACTION");
 
 } // namespace
+
+CLI::Validator seconds_up_to(double most) {
+    return {[most](const std::string& text) -> std::string {
+                double value = 0;
+                if (CLI::detail::lexical_cast(text, value) && value >= 0.001 && value <= most) return {};
+                return fmt::format("give seconds from 0.001 to {:g}", most);
+            },
+            "SECONDS"};
+}
 
 void add_run_options(CLI::App& app, RunOptions& options) {
     app.option_defaults()->group(option_groups::what);
@@ -135,7 +166,7 @@ void add_sampling(CLI::App& app, RunOptions& options) {
     app.add_option(
            "--seconds", options.seconds,
            "or stop when a cell's rounds have taken so many seconds, ten rounds at least (default: 10)")
-        ->check(CLI::Range(0.001, 1e6))
+        ->check(seconds_up_to(1e6))
         ->option_text("SECONDS");
     app.add_option("--repeat", options.repeat,
                    "take exactly N samples of each cell, instead of --noise and --seconds")

@@ -6,7 +6,8 @@
 
 namespace CLI {
 class App;
-}
+class Validator;
+} // namespace CLI
 
 namespace tandem {
 
@@ -15,6 +16,9 @@ inline constexpr auto scene_help =
 
 /// Adds the options that all of these commands have; `options` must outlive the parsing.
 void add_run_options(CLI::App& app, RunOptions& options);
+
+/// Accepts seconds from 0.001 to `most`.
+CLI::Validator seconds_up_to(double most);
 
 /// Adds when a cell has been sampled enough, and the order of cells.
 void add_sampling(CLI::App& app, RunOptions& options);

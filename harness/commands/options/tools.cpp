@@ -58,7 +58,7 @@ Action add_simulate(CLI::App& app) {
     add_motion_options(app, options);
     app.option_defaults()->group(option_groups::motion);
     app.add_option("--algorithm", options.request.algorithms,
-                   "the algorithm that finds contacts (default: chunked)")
+                   "the algorithm that finds contacts (default: tiled)")
         ->option_text("NAME");
     app.add_option("--preset", options.request.presets,
                    "a preset of the algorithm (see 'tandem algorithms'; default: its first)")

@@ -65,6 +65,16 @@ TEST_F(RecordVerdict, TheFastestIsFirstAndOthersFollowByTheirRatios) {
                           "The slowest, A, takes 3 times as long [3, 3].");
 }
 
+TEST_F(RecordVerdict, SeveralVerdictsSayOfWhichBounds) {
+    for (const auto* k : {"8", "18"})
+        for (const std::int64_t ns : {1000000, 2000000}) add({ns, ns, ns}, k);
+    const auto verdicts = verdicts_of(rows_);
+    ASSERT_EQ(verdicts.size(), 2u);
+    EXPECT_EQ(verdict_scope(verdicts[0], verdicts, rows_), "k=8: ");
+    EXPECT_EQ(verdict_scope(verdicts[1], verdicts, rows_), "k=18: ");
+    EXPECT_EQ(verdict_scope(verdicts[0], std::span(verdicts).first(1), rows_), "");
+}
+
 TEST_F(RecordVerdict, AnIntervalWithOneLeavesTwoLeaders) {
     add({1000000, 1100000, 1000000, 1100000, 1000000});
     add({1100000, 1000000, 1100000, 1000000, 1100000});

@@ -307,7 +307,7 @@ TEST_F(ScenesDescription, JsonHasABudget) {
               "no error")
         << "one name in several objects";
     EXPECT_THAT(failure("{" + jack + std::string(std::size_t{64} << 20, ' ') + "}"),
-                HasSubstr("is longer than the 64 MiB that a scene description may have"));
+                HasSubstr("is longer than the 64 MiB that a scene description or plan may have"));
 }
 
 /// A table of all pairs of materials would take 6 GB.
