@@ -315,7 +315,8 @@ class Collider:
         return self.run(poses, vertices, next_poses=next_poses, next_vertices=next_vertices).digest()
 
     def reset(self) -> None:
-        """Discards the state that is carried from frame to frame."""
+        """Discards the state that is carried from frame to frame. The next frame sets the origin of coordinates on
+        the device: call it when bodies are far from where they were in the first frame."""
         self._core.reset()
 
     @property

@@ -46,7 +46,7 @@ def of_peer(command, files, device, rounds):
     """The row of a peer. Raises BadData."""
     words = [*shlex.split(command), *map(str, files), device, str(rounds)]
     try:
-        done = subprocess.run(words, capture_output=True, text=True, check=False)
+        done = subprocess.run(words, capture_output=True, text=True, errors="replace", check=False)
     except OSError as error:
         raise BadData(f"{words[0]}: {error.strerror}") from None
     if done.returncode:
