@@ -105,6 +105,13 @@ int complete_line(CLI::App& app, std::span<const std::string> line) {
     return complete(app, line);
 }
 
+/// The message of an error, and where the option is explained.
+std::string with_help(const CLI::App& app, const CLI::ParseError& error) {
+    const auto given = app.get_subcommands();
+    return fmt::format("{}; see 'tandem {}--help'", error.what(),
+                       given.empty() ? "" : given.front()->get_name() + " ");
+}
+
 } // namespace
 
 bool is_external(const std::string& word) {
@@ -144,10 +151,7 @@ Action read_command_line(int argc, const char* const* argv) {
         return print(text.ends_with('\n') ? text : text + '\n');
     } catch (const CLI::ParseError& error) {
         const auto unknown = unknown_word(*app, words);
-        const auto given = app->get_subcommands();
-        const auto command = given.empty() ? std::string() : given.front()->get_name() + " ";
-        throw InputError(unknown.empty() ? fmt::format("{}; see 'tandem {}--help'", error.what(), command)
-                                         : unknown);
+        throw InputError(unknown.empty() ? with_help(*app, error) : unknown);
     }
     const auto given =
         std::ranges::find_if(actions, [](const auto& action) { return action.first->parsed(); });
