@@ -43,7 +43,7 @@ class Access(ReportCase):
         for name, count in (
             ("tests/records/accuracy", 8),
             ("results/h200/profile", 1),
-            ("results/h200/ceilings", 9),
+            ("tests/records/ceilings", 9),
             ("results/simulations/solver-funnel", 40),
             ("results/h200/paper/records/thresholds", 9),
         ):

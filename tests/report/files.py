@@ -133,7 +133,7 @@ class Reading(Case):
         """Each part of records of every kind is removed or replaced: they are shown, or one line names the
         position."""
         chance = random.Random(20180606)
-        names = ("h200/plan", "h200/profile", "h200/ceilings", "../tests/records/accuracy")
+        names = ("h200/plan", "h200/profile", "../tests/records/ceilings", "../tests/records/accuracy")
         shown = refused = 0
         for source in [*(f"{name}.jsonl" for name in names), "simulations/solver-funnel.jsonl.xz"]:
             record = short(committed(source)[-1], 2, ("breakdown_ns", "chosen"))
