@@ -46,6 +46,7 @@ void check_split(const Traversal& traversal, std::span<Device* const> devices, c
 } // namespace
 
 void Session::set_threads() const {
+    static_assert(parameters::threads.most == most_threads);
     const auto threads = static_cast<std::uint32_t>(settings()[parameters::threads]);
     for (auto* device : devices()) device->set_threads(threads);
 }

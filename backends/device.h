@@ -57,6 +57,9 @@ struct DeviceInfo {
 /// is created and no command is recorded.
 enum class Clocks { off, on };
 
+/// The most threads of a host device.
+inline constexpr std::uint32_t most_threads = 4096;
+
 /// One device of one backend. With clocks on, the public functions record each command in the trace, and
 /// private virtual functions execute it. Thus every command is recorded exactly once.
 /// A command (upload, download, clear, launch) belongs to a stage of a frame. Outside any StageScope it
@@ -171,7 +174,7 @@ public:
 
     /// Sets the number of threads that run the work-groups of a launch on the host; 0, the default: one per
     /// core. Results do not depend on it. Other devices ignore it. Throws InputError for more than
-    /// most_threads (base/parallel.h).
+    /// most_threads.
     void set_threads(std::uint32_t threads) { do_set_threads(threads); }
 
     /// Each later launch first calls `check`, unless it is empty. What it throws ends the frame.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cstdint>
 #include <algorithm>
 #include <cstddef>
 #include <functional>
@@ -9,9 +8,6 @@
 #include <vector>
 
 namespace tandem {
-
-/// The most threads of device `host`.
-inline constexpr std::uint32_t most_threads = 4096;
 
 /// Cores that this process may use, at least 1.
 std::size_t usable_cores();

@@ -5,7 +5,6 @@
 
 #include "algorithms/parameters/choices.h"
 #include "algorithms/parameters/parameter.h"
-#include "base/parallel.h"
 
 #include <limits>
 
@@ -235,7 +234,7 @@ inline constexpr Setting<std::int64_t> work_items{
     "work_items", 2048, ValueRange{1, 1 << 20}, "",
     "work-items per compute unit of kernels with strided loops"};
 inline constexpr Setting<std::int64_t> threads{
-    "threads", 0, ValueRange{0, most_threads}, "",
+    "threads", 0, ValueRange{0, 4096}, "",
     "threads that run the work-groups of device host; 0: one per core; other devices ignore it"};
 inline constexpr Setting<std::int64_t> pair_capacity{"pair_capacity", 1048576, ValueRange{1, word_limit}, "",
                                                      "initial capacity for candidate pairs"};

@@ -4,7 +4,6 @@
 #include "backends/host/dialect.h"
 #include "base/error.h"
 #include "base/fork_join.h"
-#include "base/parallel.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

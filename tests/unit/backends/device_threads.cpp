@@ -5,7 +5,6 @@
 #include "algorithms/kernels/sources.h"
 #include "backends/host/host_device.h"
 #include "base/error.h"
-#include "base/parallel.h"
 #include "tests/unit/backends/device_support.h"
 
 #include <barrier>
