@@ -7,11 +7,9 @@
 namespace tandem {
 
 std::string_view cubql_absence() {
-    return cubql_trees::query_ptx
-               ? ""
-               : "this program was built without cuBQL; clone github.com/NVIDIA/cuBQL, then "
-                 "configure with -DCUBQL_INCLUDE_DIR=<clone> on a machine with nvcc and "
-                 "build again";
+    if (*cubql_trees::query_ptx != '\0') return {};
+    return "this program was built without cuBQL; clone github.com/NVIDIA/cuBQL, then configure with "
+           "-DCUBQL_INCLUDE_DIR=<clone> on a machine with nvcc and build again";
 }
 
 AlgorithmStages cubql_stages(const BuildContext& context) {
