@@ -84,3 +84,8 @@ def with_width(values):
     half, middle = (high - low) / 2, statistics.median(values)
     digits = max(0, min(5, 2 - len(str(int(middle))) + 1 if half == 0 else -int(f"{half:e}".split("e")[1])))
     return f"{middle:,.{digits}f} ± {half:.{digits}f}"
+
+
+def ends(values):
+    """ "1.42 to 8.35"; one number if both are written alike."""
+    return " to ".join(dict.fromkeys(map(text, (min(values), max(values)))))

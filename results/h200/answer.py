@@ -17,6 +17,7 @@ from measured import (
     Cell,
     RESULTS,
     agrees,
+    ends,
     inverse,
     median_interval,
     paired,
@@ -388,11 +389,6 @@ def without_upload():
         for (scene, gpu, algorithm), row in times.items()
         if algorithm == "gproximity"
     ]
-
-
-def ends(values):
-    """ "1.42 to 8.35"; one number if both are written alike."""
-    return " to ".join(dict.fromkeys(map(text, (min(values), max(values)))))
 
 
 def span(ratios):

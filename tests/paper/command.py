@@ -60,6 +60,18 @@ class Paper(unittest.TestCase):
             self.assertIn("left", listed.splitlines()[-1])
             self.assertLessEqual(max(step.seconds for step in steps_of(size, "host")), 480)
 
+    def test_simulations_with_a_preset_run(self):
+        """Steps of full that no test runs as a whole: one time step of each."""
+        found = [step for step in steps_of("full", "host") if "--preset" in step.command]
+        found = [step for step in found if step.command[1] == "simulate"]
+        self.assertEqual(len(found), 2)
+        (self.folder / "records").mkdir(parents=True)
+        for step in found:
+            words = [PROGRAM, *step.command[1:]]
+            words[words.index("--steps") + 1] = "1"
+            done = subprocess.run(words, cwd=self.folder, capture_output=True, text=True)
+            self.assertEqual((done.returncode, done.stderr), (0, ""), step.name)
+
     def test_steps_by_what_they_show(self):
         """Tables, figures and names bring the steps that make their recordings; numbers do not."""
         steps = steps_of("small", "host")
