@@ -75,10 +75,10 @@ void Session::check_motion(bool has_next) const {
 }
 
 void Session::check_frames(const FrameInput& input) const {
-    const auto precision = geometry_of(settings()).precision;
+    const auto geometry = geometry_of(settings());
     if (input.next != nullptr) check_successor(input.frame, *input.next);
-    check_frame(*scene_, input.frame, precision, owned());
-    if (input.next != nullptr) of_successor([&] { check_frame(*scene_, *input.next, precision, owned()); });
+    check_frame(*scene_, input.frame, geometry, owned());
+    if (input.next != nullptr) of_successor([&] { check_frame(*scene_, *input.next, geometry, owned()); });
 }
 
 void Session::begin_at(const Scene& scene, std::shared_ptr<const Scene> centred) {
@@ -247,7 +247,7 @@ std::unique_ptr<Session> Traversal::prepare(std::span<Device* const> devices, co
                                             const Settings& settings) const {
     if (devices.empty()) throw InputError(fmt::format("{} needs a device to run on", name()));
     if (scene.bodies.empty()) throw InputError(fmt::format("scene {} has no bodies", scene.name));
-    check_scene(scene, geometry_of(settings).precision);
+    check_scene(scene, geometry_of(settings));
     check_split(*this, devices, settings);
     std::vector<Settings> fitting;
     for (const auto* device : devices) fitting.push_back(fitted(settings, device->info(), &scene));
@@ -269,7 +269,7 @@ std::unique_ptr<Session> Traversal::prepare(std::span<Device* const> devices, co
 std::unique_ptr<Session> Traversal::prepare(Device& device, const Scene& scene, const Settings& settings,
                                             Ranks& ranks) const {
     if (scene.bodies.empty()) throw InputError(fmt::format("scene {} has no bodies", scene.name));
-    check_scene(scene, geometry_of(settings).precision);
+    check_scene(scene, geometry_of(settings));
     if (is_published(settings))
         throw InputError(
             fmt::format("{} with residency=published cannot share a frame between ranks: the paper's "

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 
 namespace tandem {
 
@@ -40,6 +41,18 @@ BodyArm arm_of(const Scene& scene, std::size_t number) {
     return arm;
 }
 
+/// Sums of forces and torques are shares of their units down to a rounding error.
+void check_units(const BodyArm& arm, Precision precision) {
+    const bool is_double = precision == Precision::fp64;
+    const double least = is_double ? 0x1p-970 : 0x1p-103;
+    const double area = arm.size * arm.size, force = area * arm.pressure, torque = force * arm.reach;
+    if (std::min(force, torque) >= least) return;
+    throw InputError(fmt::format(
+        "output=wrenches: a body {:g} wide, whose pressures reach {:g}, makes forces or "
+        "torques too small for precision={}; choose {}other units",
+        arm.size, arm.pressure, is_double ? "double" : "float", is_double ? "" : "precision=double or "));
+}
+
 } // namespace
 
 std::vector<BodyArm> body_arms(const Scene& scene) {
@@ -56,6 +69,7 @@ std::vector<BodyArm> body_arms(const Scene& scene) {
 
 std::vector<std::byte> packed_arms(const std::vector<BodyArm>& arms, const Geometry& geometry) {
     std::vector<double> numbers;
+    for (const auto& arm : arms) check_units(arm, geometry.precision);
     for (const auto& arm : arms)
         numbers.insert(numbers.end(),
                        {arm.pivot[0], arm.pivot[1], arm.pivot[2], arm.size, arm.reach, arm.pressure, 0, 0});
@@ -120,6 +134,7 @@ std::array<Real, WrenchSums<Real>::parts> WrenchSums<Real>::values() const {
         Real value = (is_negative ? -magnitude : magnitude) * area_;
         if (i < 6) value = value * pressure_;
         if (i >= 3 && i < 6) value = value * reach_;
+        if (!std::isfinite(value)) throw InputError(std::string(wrench_too_large));
         result[i] = value + Real(0);
     }
     return result;

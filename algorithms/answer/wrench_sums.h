@@ -20,16 +20,18 @@ struct BodyArm {
     double pressure = 1;           ///< at least half of the largest pressure of its mesh
 };
 
-/// The error of a polygon that does not fit into the units of its bodies.
+/// The error of a polygon that does not fit into the units of its bodies, or of a sum that is not finite.
 inline constexpr std::string_view wrench_too_large =
-    "output=wrenches: a polygon exceeds what its bodies' meshes let expect, because a deformable body has "
-    "grown "
-    "to many times its size or lies more than 2^18 sizes from the origin; choose output=contacts";
+    "output=wrenches: a sum exceeds the numbers of this precision, or a polygon what its bodies' meshes let "
+    "expect, because a deformable body has grown to many times its size or lies more than 2^18 sizes from "
+    "the "
+    "origin; choose precision=double, other units or output=contacts";
 
 /// By body. The points of deformable bodies may be 2^18 times their size from the origin.
 std::vector<BodyArm> body_arms(const Scene& scene);
 
-/// The rows of wrenches.cl: 8 reals a body.
+/// The rows of wrenches.cl: 8 reals a body. Throws InputError if the smallest sums that a body can take part
+/// in are not normal numbers, so that they would lose digits.
 std::vector<std::byte> packed_arms(const std::vector<BodyArm>& arms, const Geometry& geometry);
 
 /// The polygons of a body pair added up as wrenches.cl does it, on the host. Real is float or double.
@@ -44,7 +46,7 @@ public:
     /// Adds a polygon. Throws InputError if it exceeds the units.
     void add(const std::array<Real, 3>& centroid, const std::array<Real, 3>& normal, Real area,
              Real pressure);
-    /// Force on a, torque on a about its pivot, and area.
+    /// Force on a, torque on a about its pivot, and area. Throws InputError if one is not finite.
     std::array<Real, parts> values() const;
     std::uint32_t polygons() const { return static_cast<std::uint32_t>(polygons_); }
 

@@ -205,7 +205,8 @@ DEVICE real number_at(GLOBAL const uint* words) {
 }
 
 // Writes a row for each body pair in the table: the pair of its contact there, the number of polygons, and
-// force, torque, area, 0. Writes nothing if some contacts did not fit.
+// force, torque, area, 0. Writes nothing if some contacts did not fit. A sum that is not finite exceeds the
+// units.
 KERNEL void write_wrenches(GLOBAL const uint* found, GLOBAL const uint* owners,
                            GLOBAL const uint* contact_ids, uint capacity, GLOBAL const real* arms,
                            GLOBAL const uint* table, uint places, GLOBAL const uint* sums,
@@ -227,6 +228,7 @@ KERNEL void write_wrenches(GLOBAL const uint* found, GLOBAL const uint* owners,
             real value = number_at(words + 4 * i) * units.area;
             if (i < 6) value = value * units.pressure;
             if (i >= 3 && i < 6) value = value * units.reach;
+            if (!(value - value == (real)0)) status[STATUS_EXCEEDED + EXCEEDED_UNITS] = 1u;
             to[i] = value + (real)0;
         }
         to[7] = 0;

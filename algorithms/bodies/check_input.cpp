@@ -13,7 +13,26 @@ namespace tandem {
 
 namespace {
 
-void check_mesh(const Mesh& mesh, std::size_t number, Precision precision) {
+/// Areas and pressures that are too small for the precision would lose digits.
+void check_surface(const Mesh& mesh, std::size_t number, Precision precision) {
+    Eigen::AlignedBox3d box;
+    for (const auto& tetrahedron : mesh.tetrahedra)
+        for (const auto vertex : tetrahedron) box.extend(mesh.vertices[vertex]);
+    const char* remedy = precision == Precision::fp64 ? "" : " or precision=double";
+    const double extent = box.sizes().maxCoeff(), least = smallest_extent(precision);
+    if (!(extent >= least))
+        throw InputError(fmt::format("mesh {} is {:g} wide, and areas of surfaces need at least {:g} in this "
+                                     "precision; use smaller units{}",
+                                     number, extent, least, remedy));
+    const double pressure = mesh.pressures.empty() ? 0 : std::ranges::max(mesh.pressures);
+    if (pressure > 0 && pressure < smallest_pressure(precision))
+        throw InputError(
+            fmt::format("mesh {} has pressures up to {:g}, and this precision needs at least {:g}; use "
+                        "smaller units{}",
+                        number, pressure, smallest_pressure(precision), remedy));
+}
+
+void check_mesh(const Mesh& mesh, std::size_t number, const Geometry& geometry) {
     if (mesh.tetrahedra.empty())
         throw InputError(fmt::format("mesh {} has no tetrahedra; a body needs at least one", number));
     if (mesh.boundary.size() != mesh.tetrahedra.size())
@@ -25,13 +44,14 @@ void check_mesh(const Mesh& mesh, std::size_t number, Precision precision) {
                 throw InputError(
                     fmt::format("mesh {}: tetrahedron {} has vertex {} of {}; call complete_mesh", number, t,
                                 vertex, mesh.vertices.size()));
-    const double limit = largest_coordinate(precision);
+    const double limit = largest_coordinate(geometry);
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
         if (!(mesh.vertices[v].array().abs() <= limit).all()) // also NaN
-            throw InputError(
-                fmt::format("mesh {}: vertex {} has a coordinate that is not finite or exceeds {:g}, "
-                            "the most of this precision; use larger units{}",
-                            number, v, limit, precision == Precision::fp64 ? "" : " or precision=double"));
+            throw InputError(fmt::format(
+                "mesh {}: vertex {} has a coordinate that is not finite or exceeds {:g}, "
+                "the most of this precision; use larger units{}",
+                number, v, limit, geometry.precision == Precision::fp64 ? "" : " or precision=double"));
+    if (geometry.pressures) check_surface(mesh, number, geometry.precision);
 }
 
 /// The squared length of a product of rounded rotations stays within it by orders of magnitude.
@@ -40,7 +60,7 @@ bool is_rotation(const Eigen::Quaterniond& rotation) {
     return std::abs(rotation.squaredNorm() - 1) <= tolerance; // false for NaN
 }
 
-void check_state(const Scene& scene, const Frame& frame, Precision precision, std::size_t body) {
+void check_state(const Scene& scene, const Frame& frame, const Geometry& geometry, std::size_t body) {
     const auto& mesh = scene.meshes[scene.bodies[body].mesh];
     if (!scene.bodies[body].deformable) {
         if (!is_rotation(frame.poses[body].rotation))
@@ -52,7 +72,7 @@ void check_state(const Scene& scene, const Frame& frame, Precision precision, st
                                      "mesh; give one position a vertex",
                                      body, frame.deformed[body].size(), mesh.vertices.size()));
     }
-    check_range_of(scene, frame, precision, body);
+    check_range_of(scene, frame, geometry, body);
     if (frame.skipped.empty()) return;
     const auto& skipped = frame.skipped[body];
     const bool is_ascending = std::ranges::adjacent_find(skipped, std::greater_equal<>()) == skipped.end();
@@ -75,7 +95,7 @@ void check_lists(const Scene& scene, const Frame& frame) {
 
 } // namespace
 
-void check_scene(const Scene& scene, Precision precision) {
+void check_scene(const Scene& scene, const Geometry& geometry) {
     std::vector<bool> is_used(scene.meshes.size());
     for (std::size_t body = 0; body < scene.bodies.size(); ++body) {
         const auto mesh = scene.bodies[body].mesh;
@@ -85,7 +105,7 @@ void check_scene(const Scene& scene, Precision precision) {
         is_used[mesh] = true;
     }
     for (std::size_t mesh = 0; mesh < scene.meshes.size(); ++mesh)
-        if (is_used[mesh]) check_mesh(scene.meshes[mesh], mesh, precision);
+        if (is_used[mesh]) check_mesh(scene.meshes[mesh], mesh, geometry);
     if (scene.world_size != 0 && scene.numbers.empty() && scene.bodies.size() % scene.world_size != 0)
         throw InputError(fmt::format("Scene::world_size is {}, which does not divide {} bodies",
                                      scene.world_size, scene.bodies.size()));
@@ -96,13 +116,13 @@ void check_scene(const Scene& scene, Precision precision) {
                                          scene.bodies.size()));
 }
 
-void check_frame(const Scene& scene, const Frame& frame, Precision precision,
+void check_frame(const Scene& scene, const Frame& frame, const Geometry& geometry,
                  std::optional<std::span<const std::uint32_t>> owned) {
     check_lists(scene, frame);
     for (std::uint32_t body = 0; body < scene.bodies.size(); ++body)
-        if (!owned || scene.bodies[body].fixed) check_state(scene, frame, precision, body);
+        if (!owned || scene.bodies[body].fixed) check_state(scene, frame, geometry, body);
     if (!owned) return;
-    for (const auto body : *owned) check_state(scene, frame, precision, body);
+    for (const auto body : *owned) check_state(scene, frame, geometry, body);
 }
 
 } // namespace tandem

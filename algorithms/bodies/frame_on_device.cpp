@@ -79,11 +79,11 @@ Frame downloaded(Device& device, const Scene& scene, const DeviceFrame& frame) {
     return frame_on_host;
 }
 
-void refuse_flawed(Device& device, const Scene& scene, const DeviceFrameInput& input, Precision precision,
-                   std::uint64_t flawed) {
-    check_range(scene, downloaded(device, scene, input.frame), precision);
+void refuse_flawed(Device& device, const Scene& scene, const DeviceFrameInput& input,
+                   const Geometry& geometry, std::uint64_t flawed) {
+    check_range(scene, downloaded(device, scene, input.frame), geometry);
     if (input.next != nullptr)
-        of_successor([&] { check_range(scene, downloaded(device, scene, *input.next), precision); });
+        of_successor([&] { check_range(scene, downloaded(device, scene, *input.next), geometry); });
     throw InputError(
         fmt::format("{} rows of the frame were out of range on {} and have changed since; do not "
                     "write them before run() returns",

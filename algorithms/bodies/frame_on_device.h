@@ -4,6 +4,7 @@
 #pragma once
 
 #include "algorithms/bodies/frame_input.h"
+#include "algorithms/bounds/geometry.h"
 
 namespace tandem {
 
@@ -17,6 +18,6 @@ Frame downloaded(Device& device, const Scene& scene, const DeviceFrame& frame);
 /// Throws the InputError that check_range throws for the same frame in the host's memory, or of_successor for
 /// its successor. `flawed`: number of rows out of range, at least 1.
 [[noreturn]] void refuse_flawed(Device& device, const Scene& scene, const DeviceFrameInput& input,
-                                Precision precision, std::uint64_t flawed);
+                                const Geometry& geometry, std::uint64_t flawed);
 
 } // namespace tandem

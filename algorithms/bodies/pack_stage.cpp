@@ -37,7 +37,7 @@ void check_device(const DeviceInfo& info, const Geometry& geometry) {
 PackStage::PackStage(const Bodies& bodies, LaunchShape shape)
     : bodies_(bodies),
       shape_(shape),
-      limit_(largest_coordinate(bodies.geometry().precision)),
+      limit_(largest_coordinate(bodies.geometry())),
       deformable_(deformable_bodies(bodies.scene())) {
     auto& device = bodies.device();
     const auto& scene = bodies.scene();

@@ -30,7 +30,7 @@ void check_finite(const std::vector<Eigen::Vector3d>& vertices, std::size_t body
 }
 
 /// `mesh_size`: largest coordinate of the mesh of a rigid body.
-void check_body(const Scene& scene, const Frame& frame, Precision precision, std::size_t body,
+void check_body(const Scene& scene, const Frame& frame, const Geometry& geometry, std::size_t body,
                 double mesh_size) {
     const bool is_deformable = scene.bodies[body].deformable;
     if (is_deformable) check_finite(frame.deformed[body], body);
@@ -38,27 +38,35 @@ void check_body(const Scene& scene, const Frame& frame, Precision precision, std
         throw InputError(fmt::format("body {} has a position that is not finite; repair the frame", body));
     const double size = is_deformable ? largest(frame.deformed[body]) : mesh_size;
     const double reach = std::max(size, largest(frame.poses[body].translation));
-    const double limit = largest_coordinate(precision);
+    const double limit = largest_coordinate(geometry);
     if (reach <= limit) return;
-    const bool is_double = precision == Precision::fp64;
-    throw InputError(fmt::format("body {} has a coordinate of {:g}, and precision={} takes at most {:g}; {}",
-                                 body, reach, is_double ? "double" : "float", limit,
-                                 is_double ? "choose larger units" : "use precision=double or larger units"));
+    const bool is_double = geometry.precision == Precision::fp64;
+    throw InputError(fmt::format(
+        "body {} has a coordinate of {:g}, and precision={} takes at most {:g}{}; {}", body, reach,
+        is_double ? "double" : "float", limit, geometry.pressures ? " where surfaces have areas" : "",
+        is_double ? "choose larger units" : "use precision=double or larger units"));
 }
 
 } // namespace
 
-double largest_coordinate(Precision precision) { return precision == Precision::fp64 ? 1e306 : 1e36; }
+double largest_coordinate(const Geometry& geometry) {
+    if (geometry.precision == Precision::fp64) return geometry.pressures ? 1e153 : 1e306;
+    return geometry.pressures ? 1e18 : 1e36;
+}
 
-void check_range(const Scene& scene, const Frame& frame, Precision precision) {
+double smallest_pressure(Precision precision) { return precision == Precision::fp64 ? 1e-290 : 1e-30; }
+
+double smallest_extent(Precision precision) { return precision == Precision::fp64 ? 1e-140 : 1e-12; }
+
+void check_range(const Scene& scene, const Frame& frame, const Geometry& geometry) {
     std::vector<double> mesh_sizes;
     for (const auto& mesh : scene.meshes) mesh_sizes.push_back(largest(mesh.vertices));
     for (std::size_t body = 0; body < scene.bodies.size(); ++body)
-        check_body(scene, frame, precision, body, mesh_sizes[scene.bodies[body].mesh]);
+        check_body(scene, frame, geometry, body, mesh_sizes[scene.bodies[body].mesh]);
 }
 
-void check_range_of(const Scene& scene, const Frame& frame, Precision precision, std::size_t body) {
-    check_body(scene, frame, precision, body, 0);
+void check_range_of(const Scene& scene, const Frame& frame, const Geometry& geometry, std::size_t body) {
+    check_body(scene, frame, geometry, body, 0);
 }
 
 } // namespace tandem

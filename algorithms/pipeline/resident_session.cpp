@@ -79,7 +79,7 @@ void ResidentSession::reject_flaws(const Input& input) {
     const auto flawed = pipeline_.status.counter(STATUS_FLAWED);
     if (flawed == 0) return;
     stale_ = true;
-    refuse_flawed(pipeline_.device, scene_, *input.device, pipeline_.bodies->geometry().precision, flawed);
+    refuse_flawed(pipeline_.device, scene_, *input.device, pipeline_.bodies->geometry(), flawed);
 }
 
 /// Enqueues the frame's commands from body pairs to contacts.

@@ -138,7 +138,7 @@ void check_required(const std::vector<BackendReport>& backends, const std::vecto
 }
 
 void check_coordinates(const Cell& cell, const Scene& scene, const Frame& frame) {
-    check_range(scene, frame, geometry_of(cell.settings).precision);
+    check_range(scene, frame, geometry_of(cell.settings));
 }
 
 void check_coordinates(const Cell& cell, const Scene& scene, const FrameRange& range) {

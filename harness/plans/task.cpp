@@ -3,6 +3,7 @@
 #include "harness/plans/task.h"
 
 #include "algorithms/bodies/nothing_meets.h"
+#include "algorithms/bodies/range.h"
 #include "algorithms/bounds/geometry.h"
 #include "algorithms/parameters/table.h"
 #include "harness/plans/inputs.h"
@@ -20,11 +21,12 @@ namespace tandem {
 
 namespace {
 
-/// Removes cells whose precision cannot represent the coordinates of a frame. Each precision is checked once.
+/// Removes cells whose precision cannot represent the coordinates of a frame. Each range of numbers is
+/// checked once.
 void fit_coordinates(Task& task, const Unfit& unfit) {
-    std::map<Precision, std::optional<InputError>> known;
+    std::map<double, std::optional<InputError>> known; // by the largest coordinate
     std::erase_if(task.cells, [&](const Cell& cell) {
-        const auto [found, is_new] = known.try_emplace(geometry_of(cell.settings).precision);
+        const auto [found, is_new] = known.try_emplace(largest_coordinate(geometry_of(cell.settings)));
         if (is_new) try {
                 check_coordinates(cell, task.scene, task.range);
             } catch (const InputError& error) {

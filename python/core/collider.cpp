@@ -163,11 +163,11 @@ void Collider::prepare(const ColliderOptions& options) {
         traversal = &tandem::algorithm(algorithm_);
         settings = traversal->settings(options.settings, options.preset);
     }
-    precision_ = geometry_of(settings).precision;
+    geometry_ = geometry_of(settings);
     motion_ = settings[parameters::motion];
     nothing_meets_ = why_nothing_meets(scene_, settings[parameters::self]);
-    host_input_.emplace(scene_, precision_);
-    check_range(scene_, rest_frame(scene_), precision_);
+    host_input_.emplace(scene_, geometry_);
+    check_range(scene_, rest_frame(scene_), geometry_);
     if (traversal == nullptr) return;
     session_ = traversal->prepare(devices_, scene_, settings);
 }
@@ -339,7 +339,7 @@ FrameInput Collider::host_frames(const Input& input) {
     const auto& frame = host_input_->frame(input.frame, input.updates ? last.get() : nullptr);
     is_last_on_device_ = false;
     if (!input.next) return frame;
-    if (!next_host_input_) next_host_input_.emplace(scene_, precision_);
+    if (!next_host_input_) next_host_input_.emplace(scene_, geometry_);
     return {frame, of_successor([&] {
                 return &next_host_input_->frame(*input.next, input.updates ? &frame : nullptr);
             })};

@@ -126,7 +126,7 @@ private:
     Scene scene_;
     std::string algorithm_, nothing_meets_;
     std::vector<Cell> candidates_; ///< candidates of algorithm auto
-    Precision precision_ = Precision::fp32;
+    Geometry geometry_;
     Motion motion_ = Motion::none;
     std::optional<HostInput> host_input_, next_host_input_; ///< of frames, and of their successors
     std::optional<DeviceInput> device_input_;

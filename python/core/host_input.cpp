@@ -19,8 +19,8 @@ Frame rest_frame(const Scene& scene) {
     return frame;
 }
 
-HostInput::HostInput(const Scene& scene, Precision precision)
-    : scene_(scene), precision_(precision), limit_(largest_coordinate(precision)) {}
+HostInput::HostInput(const Scene& scene, const Geometry& geometry)
+    : scene_(scene), geometry_(geometry), limit_(largest_coordinate(geometry)) {}
 
 void HostInput::take_unused() {
     std::swap(frames_[0], frames_[1]); // in a loop, the answer of the last frame is still alive
@@ -34,7 +34,7 @@ const Frame& HostInput::frame(const FrameArrays& arrays, const Frame* base) {
     take_unused();
     try {
         fill(arrays, base);
-        if (out_of_range_ > 0) check_range(scene_, *frames_.front(), precision_);
+        if (out_of_range_ > 0) check_range(scene_, *frames_.front(), geometry_);
     } catch (...) {
         std::swap(frames_[0], frames_[1]); // an update may follow, of the last frame that was usable
         throw;

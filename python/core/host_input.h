@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "algorithms/bounds/geometry.h"
 #include "python/core/frame_arrays.h"
 
 #include <array>
@@ -16,7 +17,7 @@ Frame rest_frame(const Scene& scene);
 class HostInput {
 public:
     /// `scene` must outlive it.
-    HostInput(const Scene& scene, Precision precision);
+    HostInput(const Scene& scene, const Geometry& geometry);
 
     /// A frame of arrays that pass check_rows. What they leave out is that of `base`, or of rest_frame() if
     /// it is null. The next call but one overwrites the frame. Throws InputError for coordinates that do not
@@ -35,7 +36,7 @@ private:
     void set_vertices(std::size_t body, const GivenRows& vertices);
 
     const Scene& scene_;
-    Precision precision_;
+    Geometry geometry_;
     double limit_; ///< largest valid coordinate
     /// The last frame and one before it. Their memory is reused, unless an answer holds them.
     std::array<std::shared_ptr<Frame>, 2> frames_;

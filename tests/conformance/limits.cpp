@@ -2,6 +2,7 @@
 // Kernels at body pairs past 2^31, where twice an index wraps in 32 bits. No scene has so many pairs: tables
 // are mapped without memory behind them and have one nonzero row. A traversal gets one seed, or one item, of
 // that pair. Host kernels compile from the same source as all others.
+#include "algorithms/answer/status.h"
 #include "algorithms/chunked/chunked.cl.h"
 #include "algorithms/gproximity/gproximity.cl.h"
 #include "algorithms/leaf_query/body_query.cl.h"

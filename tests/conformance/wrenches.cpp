@@ -120,6 +120,51 @@ TEST_P(WrenchesOf, UnitsScaleSums) {
         }
 }
 
+/// A scene and its frame 0 with lengths times 2^exponent.
+std::pair<Scene, Frame> scaled(Scene scene, int exponent) {
+    auto frame = scene.frame(0);
+    const double unit = std::ldexp(1.0, exponent);
+    for (auto& mesh : scene.meshes)
+        for (auto& vertex : mesh.vertices) vertex *= unit;
+    for (auto& pose : frame.poses) pose.translation *= unit;
+    for (auto& body : frame.deformed)
+        for (auto& vertex : body) vertex *= unit;
+    return {std::move(scene), std::move(frame)};
+}
+
+/// In any unit of length, numbers are those of other units without a lost digit, or the frame is refused.
+TEST_P(WrenchesOf, UnitsOfLengthScaleSumsOrAreRefused) {
+    const auto& tiled = algorithm("tiled");
+    for (const std::string output : {"contacts", "wrenches"}) {
+        const SettingTexts given{{"output", output}, {"contact_rule", "pressure"}, {"order", "canonical"}};
+        const auto rows = prepare(tiled, scene_, given)->run(scene_.frame(0)).download_contacts();
+        const bool sums = output == "wrenches";
+        std::map<int, std::string> refused;
+        for (int exponent = -64; exponent <= 64; exponent += 4) {
+            SCOPED_TRACE(fmt::format("{}, lengths times 2^{}", output, exponent));
+            const auto [scene, frame] = scaled(scene_, exponent);
+            std::vector<ContactPoint> others;
+            const auto message =
+                message_of([&] { others = prepare(tiled, scene, given)->run(frame).download_contacts(); });
+            if (message != "no error") {
+                refused[exponent] = message;
+                continue;
+            }
+            ASSERT_EQ(rows.size(), others.size());
+            for (std::size_t i = 0; i < rows.size(); ++i) {
+                for (std::size_t k = 0; k < 3; ++k) {
+                    EXPECT_EQ(std::ldexp(rows[i].point[k], sums ? 2 * exponent : exponent),
+                              others[i].point[k]);
+                    EXPECT_EQ(std::ldexp(rows[i].normal[k], sums ? 3 * exponent : 0), others[i].normal[k]);
+                }
+                EXPECT_EQ(std::ldexp(rows[i].depth, 2 * exponent), others[i].depth);
+            }
+        }
+        EXPECT_FALSE(refused.contains(-32) || refused.contains(28)) << output;
+        EXPECT_TRUE(refused.contains(-60) && refused.contains(64)) << output;
+    }
+}
+
 TEST_P(WrenchesOf, BatchesHaveTheSameSums) {
     const auto scene = procession(12, 2, 0.02);
     const auto frame = scene.frame(1);
@@ -192,13 +237,25 @@ TEST_P(WrenchesOf, ImpossibleSettingsAndSizesAreRefused) {
                     prepare(tiled, scene_, {{"output", "wrenches"}, {"contact_rule", "sat"}});
                 }),
                 HasSubstr("output=wrenches needs contact_rule=pressure"));
+    auto faint = scene_;
+    for (auto& mesh : faint.meshes)
+        for (double& pressure : mesh.pressures) pressure *= 0x1p-120;
+    EXPECT_THAT(message_of([&] {
+                    prepare(tiled, faint, {{"contact_rule", "pressure"}});
+                }),
+                HasSubstr("has pressures up to"));
+    EXPECT_EQ(message_of([&] {
+                  prepare(tiled, faint, {{"contact_rule", "pressure"}, {"precision", "double"}});
+              }),
+              "no error");
     const auto session = prepare(
         tiled, scene_,
         {{"output", "wrenches"}, {"contact_rule", "pressure"}, {"origin", "world"}, {"precision", "double"}});
     auto frame = scene_.frame(0);
     for (auto& pose : frame.poses) pose.translation += Vector::Constant(1e9);
     for (auto& vertex : frame.deformed[1]) vertex += Vector::Constant(1e9);
-    EXPECT_THAT(message_of([&] { session->run(frame); }), HasSubstr("a polygon exceeds"))
+    EXPECT_THAT(message_of([&] { session->run(frame); }),
+                HasSubstr("a polygon what its bodies' meshes let expect"))
         << "the deformable body is 2^28 times its size from the origin";
     EXPECT_EQ(session->run(scene_.frame(0)).contacts,
               prepare(tiled, scene_, {{"output", "wrenches"}, {"contact_rule", "pressure"}})

@@ -6,6 +6,8 @@
 #include "geometry/exact_polygon.h"
 #include "harness/verify/oracle/frame_truth.h"
 #include "scenes/hard/hard.h"
+#include "scenes/digest.h"
+#include "tests/support/message_of.h"
 #include "tests/support/on_device.h"
 #include "tests/support/test.h"
 
@@ -13,6 +15,9 @@ namespace tandem {
 namespace {
 
 using namespace support;
+using ::testing::AnyOf;
+using ::testing::HasSubstr;
+using ::testing::UnorderedElementsAre;
 
 std::string with_field(const HardFamily& family) {
     const auto* pairs = family.scene != nullptr ? "" : "pairs=36,together=18,";
@@ -38,6 +43,7 @@ protected:
 
 TEST_P(HardPolygons, AreThoseOfTheReference) {
     std::size_t polygons = 0, with_polygons = 0;
+    std::set<std::string> refused; // because float cannot hold their areas
     for (const auto& family : hard_families()) {
         if (family.name == "not-finite" || family.name == "counter-wrap") continue;
         SCOPED_TRACE(family.name);
@@ -45,12 +51,19 @@ TEST_P(HardPolygons, AreThoseOfTheReference) {
         for (const auto& mesh : scene.meshes) ASSERT_GT(std::ranges::min(mesh.pressures), 0);
         for (const std::string precision : {"float", "double"}) {
             if (!long_form() && GetParam() != "host" && precision == "double") continue;
-            const auto rows = expect_right(
-                scene, {{"precision", precision}, {"origin", family.distant ? "auto" : "world"}});
+            const SettingTexts given{{"precision", precision}, {"origin", family.distant ? "auto" : "world"}};
+            std::vector<ContactPoint> rows;
+            const auto message = message_of([&] { rows = expect_right(scene, given); });
+            if (message != "no error") {
+                EXPECT_EQ(precision, "float");
+                EXPECT_THAT(message, AnyOf(HasSubstr("areas of surfaces"), HasSubstr("surfaces have areas")));
+                refused.emplace(family.name);
+            }
             polygons += rows.size();
             with_polygons += rows.empty() ? 0 : 1;
         }
     }
+    EXPECT_THAT(refused, UnorderedElementsAre("scale", "subnormal"));
     EXPECT_GT(polygons, 1000u);
     EXPECT_GT(with_polygons, 30u);
 }
