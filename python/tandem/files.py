@@ -22,6 +22,12 @@ def _has_records(path):
     return start.startswith(b"\xfd7zXZ") or (line.startswith(b"{") and any(word in line for word in _STARTS))
 
 
+def _is_page(path):
+    start = b"<!doctype html"
+    with open(path, "rb") as file:
+        return file.read(len(start)).lower() == start
+
+
 def _is_same(path, other):
     try:
         return os.path.samefile(path, other)
@@ -29,7 +35,7 @@ def _is_same(path, other):
         return False
 
 
-def _check_existing(path, inputs):
+def _check_existing(path, inputs, is_page):
     if any(_is_same(path, one) for one in inputs):
         raise BadUse(f"{path}: is an input of this command; choose another file for the output")
     if not os.access(path, os.W_OK):
@@ -38,12 +44,15 @@ def _check_existing(path, inputs):
         raise BadUse(
             f"{path}: is a file of records, which are never overwritten; choose another file for the output"
         )
+    if is_page and os.path.getsize(path) > 0 and not _is_page(path):
+        raise BadUse(f"{path}: exists and is no HTML page; choose another file for the output")
 
 
-def check_output(path, inputs=(), suffix=""):
+def check_output(path, inputs=(), suffix="", is_page=False):
     """Call this before any work. Raises BadUse for an output that is one of the inputs or a file of records,
     compared by device and inode, and for one that cannot be written, such as a folder. `suffix`: that of a
-    file which is made beside it and then renamed; the output has to be a regular file."""
+    file which is made beside it and then renamed; the output has to be a regular file. `is_page`: only
+    pages and empty files may be overwritten."""
     path = os.fspath(path)
     for name in (path + suffix, path):
         try:
@@ -53,7 +62,7 @@ def check_output(path, inputs=(), suffix=""):
         except OSError as problem:
             raise BadUse(f"{path}: cannot be written ({problem.strerror}); choose another file") from None
     if stat.S_ISREG(mode):
-        _check_existing(path, inputs)
+        _check_existing(path, inputs, is_page)
         return
     if stat.S_ISDIR(mode):
         raise BadUse(f"{path}: is a folder; name a file for the output")

@@ -121,8 +121,18 @@ class Outputs(Case):
         )
         scene = self.folder / "scene.json"
         write_json(scene, frames=1, meshes={"a": {"file": "mesh.msh"}}, bodies=[{"mesh": "a"}])
-        self.kept(self.mesh, "is an input", "view", scene, "-o", lambda name: name)
-        self.kept(self.mesh, "is an input", "report", plan, "--scene", scene, "-o", lambda name: name)
+        self.kept(self.mesh, "is no HTML page", "view", scene, "-o", lambda name: name)
+        self.kept(self.mesh, "is no HTML page", "report", plan, "--scene", scene, "-o", lambda name: name)
+
+    def test_pages_replace_pages_only(self):
+        note = self.folder / "note.html"
+        note.write_text("<p>mine</p>")
+        for command in (("view", "plates", "--frames", "20"), ("report", RECORDS)):
+            self.kept(note, "exists and is no HTML page", *command, "-o", lambda name: name)
+        for text in ("", "<!DOCTYPE html>"):
+            note.write_text(text)
+            self.output("view plates --frames 20 -o", note)
+            self.assertGreater(note.stat().st_size, 10_000)
 
     def test_folders_of_pages_and_figures(self):
         for name, command in (

@@ -110,7 +110,7 @@ class Exported(Case):
         )
         old = SOURCE / "results/h200/paper/records/convert.jsonl"
         self.bad("cannot be written", "export", old, "--csv", self.work / "none" / "x.csv")
-        self.bad("writing failed (No space left on device)", "export", old, "--csv", "/dev/full")
+        self.bad("writing failed (No space left on device)", "export", old, "--csv", "/dev/full", code=3)
         record = json.loads(old.read_text().split("\n", 1)[0])
         for change, expected in (
             ({"frames": None}, "is no record of a cell"),

@@ -12,7 +12,7 @@ import json
 from .. import cell_rows, lines
 from ..cell import Cell
 from ..csv_fields import text_field
-from ..errors import BadUse
+from ..errors import OutputError
 from ..files import check_output
 from . import Parser, run, warn
 
@@ -61,7 +61,7 @@ def _write(path, text):
             what = "writing failed"
             file.write(text.encode(errors="surrogateescape"))
     except OSError as problem:
-        raise BadUse(f"{path}: {what} ({problem.strerror}); choose another file") from None
+        raise OutputError(f"{path}: {what} ({problem.strerror}); choose another file") from None
 
 
 def _make(arguments):

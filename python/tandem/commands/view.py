@@ -35,14 +35,16 @@ def _file_name(scene):
 
 def _make(options, program):
     if options.output:
-        check_output(options.output, [*filter(None, (options.scene,)), *(options.mesh or ())], ".partial")
+        check_output(
+            options.output, [*filter(None, (options.scene,)), *(options.mesh or ())], ".partial", True
+        )
     page = open_page("", False, True, program, "tandem view")
     scene = shown_scene(program, words_of(options.scene, options), options.output)
     page.title, page.data["scene"] = f"{names.scene(scene.key)}: a scene of tandem", scene.json
     page.sections = [scene_section(scene.key)]
     path = options.output or _file_name(scene.name)
     if not options.output:
-        check_output(path, (), ".partial")
+        check_output(path, (), ".partial", True)
     written = write_page(path, page)
     return (
         f"{path}: {scene.frames} {'frame' if scene.frames == 1 else 'frames'} of {scene.key}, {written / 1e6:.1f} MB\n",
