@@ -183,7 +183,7 @@ TEST(HardScenes, RefuseImpossibleParameters) {
 }
 
 std::string refusal(const Scene& scene, std::size_t frame) {
-    return message_of([&] { check_range(scene, scene.frame(frame), Geometry{}); });
+    return support::message_of([&] { check_range(scene, scene.frame(frame), Geometry{}); });
 }
 
 /// For every corner, infinite or not a number.

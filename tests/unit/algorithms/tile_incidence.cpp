@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Table of tetrahedra that share a vertex, by pairs of tiles, against brute force over vertex numbers.
 #include "algorithms/hierarchy/tile_incidence.h"
+#include "tests/support/cells.h"
 #include "tests/support/flawed.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Which arguments compile: backends/handles.h. tests/kernel_files.py has what the build generates.
 #include "algorithms/answer/digest.cl.h"
+#include "backends/host/host_device.h"
 #include "tests/support/test.h"
 #include "tests/unit/backends/device_support.h"
 

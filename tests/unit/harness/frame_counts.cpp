@@ -5,6 +5,7 @@
 #include "tests/support/test.h"
 
 #include <bit>
+#include <nlohmann/json.hpp>
 
 namespace tandem {
 namespace {

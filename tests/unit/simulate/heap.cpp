@@ -70,7 +70,7 @@ simulate::Problem falling_rod(Random& random) {
     node.spin = {0, 0, random.uniform(-3, 3)};
     node.inverse_mass = 1;
     node.inverse_inertia = Eigen::Vector3d(12, 12, 12).asDiagonal();
-    problem.rows = {simulate::row_between({0, 0, 0}, {random.uniform(-0.5, 0.5), -0.3, 0}, 1)};
+    problem.rows = {unit_test::row_between({0, 0, 0}, {random.uniform(-0.5, 0.5), -0.3, 0}, 1)};
     auto& row = problem.rows[0];
     row.bias = row.bounce = row.normal.dot(problem.velocity(row));
     return problem;
