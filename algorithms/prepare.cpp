@@ -28,6 +28,18 @@ std::string names_of(std::span<Device* const> devices) {
     return fmt::format("{}", fmt::join(names, " + "));
 }
 
+/// Throws InputError unless there are devices, each named once.
+void check_devices(const Traversal& traversal, std::span<Device* const> devices) {
+    if (devices.empty()) throw InputError(fmt::format("{} needs a device to run on", traversal.name()));
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+        if (devices[i] == nullptr)
+            throw InputError(fmt::format("devices: number {} is a null pointer; open a device first", i));
+        if (std::ranges::count(devices.first(i), devices[i]) != 0)
+            throw InputError(
+                fmt::format("devices: {} is named twice; name each device once", devices[i]->info().id));
+    }
+}
+
 /// Throws InputError if several devices cannot split a frame with these settings.
 void check_split(const Traversal& traversal, std::span<Device* const> devices, const Settings& settings) {
     if (devices.size() < 2) return;
@@ -245,7 +257,7 @@ void Traversal::check(std::span<Device* const> devices, const Settings& settings
 
 std::unique_ptr<Session> Traversal::prepare(std::span<Device* const> devices, const Scene& scene,
                                             const Settings& settings) const {
-    if (devices.empty()) throw InputError(fmt::format("{} needs a device to run on", name()));
+    check_devices(*this, devices);
     if (scene.bodies.empty()) throw InputError(fmt::format("scene {} has no bodies", scene.name));
     check_scene(scene, geometry_of(settings));
     check_split(*this, devices, settings);

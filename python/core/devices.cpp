@@ -2,7 +2,10 @@
 #include "python/core/devices.h"
 
 #include "backends/registry.h"
+#include "base/memory.h"
 #include "python/core/process.h"
+
+#include <nanobind/stl/string_view.h>
 
 namespace nb = nanobind;
 
@@ -48,6 +51,8 @@ void bind_devices(nb::module_& module) {
         "backend, name, driver, compiler, compute_units, memory_bytes, local_bytes, double (whether it "
         "has that type), hardware (PCI address or UUID; None if unknown). A backend without devices "
         "has no entry; a Collider on one of its devices raises an error with the reason.");
+    module.def("refuse_beyond_memory", &refuse_beyond_memory, nb::arg("what"), nb::arg("bytes"),
+               "Raises ValueError if `what` needs more bytes than this process can still allocate.");
 }
 
 } // namespace tandem::python

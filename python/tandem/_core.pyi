@@ -24,6 +24,11 @@ def devices() -> list[dict[str, object]]:
     All devices, with the fields of `tandem devices --json`: id (the argument `device` of Collider), backend, name, driver, compiler, compute_units, memory_bytes, local_bytes, double (whether it has that type), hardware (PCI address or UUID; None if unknown). A backend without devices has no entry; a Collider on one of its devices raises an error with the reason.
     """
 
+def refuse_beyond_memory(what: str, bytes: float) -> None:
+    """
+    Raises ValueError if `what` needs more bytes than this process can still allocate.
+    """
+
 class MeshReading:
     """How a mesh is read and connected: the arguments of tandem.read_mesh."""
 

@@ -6,8 +6,11 @@ import math
 
 import numpy
 
+from . import _core
 from .arguments import body_pairs_of, integer_of, list_of, number_of
 from .arrays import numpy_array, refuse_mapping
+
+BYTES_OF_BODY = 256  # at least, of a collider: in its scene, its frames and on the device
 
 
 class Numbering:
@@ -22,6 +25,7 @@ class Numbering:
             raise ValueError(
                 f"worlds: {worlds} with {bodies} bodies each; give 1 or more, with fewer than 2^31 bodies in all"
             )
+        _core.refuse_beyond_memory(f"{self.count * bodies} bodies", BYTES_OF_BODY * self.count * bodies)
         self.deformable = frozenset(
             world * bodies + body for world in range(self.count) for body in deformable
         )

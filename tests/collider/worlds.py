@@ -5,10 +5,12 @@ each, on every device, with filters, deformable bodies, updates and arrays of th
 numbers give one clear line."""
 
 import pickle
+import subprocess
+import sys
 
 import numpy
 
-from tests.collider.case import DEVICES, ColliderCase, tandem
+from tests.collider.case import DEVICES, FOLDER, ColliderCase, tandem
 from tests.collider.meeting import matrices
 from tests.program import LONG
 
@@ -182,6 +184,24 @@ class Worlds(ColliderCase):
                     together._core.run_device_input(
                         wrong, [], *(rows.reshape(6, 7) for rows in given.values())
                     )
+
+    def test_more_worlds_than_memory(self):
+        """One line in little time, instead of an end by the system."""
+        code = """
+import resource
+import tandem
+corner = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]], [[0, 1, 2, 3]]
+resource.setrlimit(resource.RLIMIT_AS, (1 << 33, 1 << 33))
+try:
+    tandem.Collider([corner, corner], worlds=100_000_000)
+except ValueError as error:
+    print(error)
+"""
+        done = subprocess.run([sys.executable, "-c", code], cwd=FOLDER.name, capture_output=True, text=True)
+        self.assertEqual(done.stderr, "")
+        self.assertRegex(
+            done.stdout, r"^200000000 bodies take at least 51.20 GB, and \S+ GB are free; use fewer "
+        )
 
     def test_mistakes(self):
         poses = self.poses(3, 2)

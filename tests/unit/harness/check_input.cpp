@@ -124,6 +124,17 @@ TEST_F(CheckInput, ScenesAreCheckedBeforeTheyArePrepared) {
         << "no setting needs frame 0";
 }
 
+TEST_F(CheckInput, Devices) {
+    const auto& tiled = algorithm("tiled");
+    auto* host = &device("host");
+    const auto refused = [&](const std::vector<Device*>& devices) {
+        return message_of([&] { tiled.prepare(devices, scene_, tiled.settings({})); });
+    };
+    EXPECT_EQ(refused({}), "tiled needs a device to run on");
+    EXPECT_THAT(refused({host, nullptr}), HasSubstr("number 1 is a null pointer"));
+    EXPECT_THAT(refused({host, host}), HasSubstr("host is named twice"));
+}
+
 TEST_F(CheckInput, SettingsByName) {
     const auto& tiled = algorithm("tiled");
     EXPECT_EQ(tiled.settings({{"k", "8"}}).text("k"), "8");
