@@ -22,12 +22,13 @@ using Samples = std::vector<double>;
 constexpr int repeats = 9;
 
 /// The measurements on one device, with its buffer sizes. Large buffers exceed every cache, small ones fit
-/// the second-level cache of every GPU.
+/// the second-level cache of every GPU. Work-items of a processor move pages, alone in their groups.
 class Bench {
 public:
     explicit Bench(Device& device)
         : device_(device),
-          group_(std::min(256u, device.info().max_group_size)),
+          wide_(std::min(256u, device.info().max_group_size)),
+          group_(device.info().is_gpu ? wide_ : 1),
           groups_(device.info().is_gpu ? device.info().compute_units * 8 : device.info().compute_units * 4),
           large_(fitted(device.info().is_gpu ? std::size_t{2} << 30 : std::size_t{256} << 20)),
           small_(fitted(cached_bytes(device.info()))) {}
@@ -37,18 +38,19 @@ public:
 private:
     using Nothing = KernelOf<kernels::ceilings::DoNothing>;
 
-    /// Rounds down to whole rounds of the grid, in which each work-item moves 8 words of 8 bytes.
+    /// Rounds down to whole rounds of the grid, in which each work-item moves 8 words of 8 bytes; alone in
+    /// its group, 512.
     std::size_t fitted(std::size_t bytes) const {
-        const std::size_t round = std::size_t{groups_} * group_ * 64;
+        const std::size_t round = std::size_t{groups_} * group_ * (group_ == 1 ? 4096 : 64);
         return std::max<std::size_t>(1,
                                      std::min<std::size_t>(bytes, device_.info().max_allocation / 4) / round)
                * round;
     }
     /// Only the overlap test depends on k.
     template<class Arguments>
-    KernelOf<Arguments> compiled(int k = 18) {
+    KernelOf<Arguments> compiled(std::uint32_t group, int k = 18) {
         KernelOf<Arguments> kernel;
-        compile_kernel(device_, kernel, geometry_defines({.k = k}, group_));
+        compile_kernel(device_, kernel, geometry_defines({.k = k}, group));
         return kernel;
     }
     template<class Arguments>
@@ -64,7 +66,8 @@ private:
     Samples upload_pinned(const Buffer& buffer, std::span<const std::byte> bytes);
 
     Device& device_;
-    std::uint32_t group_;
+    std::uint32_t wide_;  ///< work-items of a group that computes
+    std::uint32_t group_; ///< of one that moves memory
     std::uint32_t groups_;
     std::size_t large_;
     std::size_t small_;
@@ -103,19 +106,27 @@ Samples Bench::per_second(double amount, const Work& work) {
 }
 
 /// Overlap tests a second. Every work-item tests boxes in its registers, `rounds` times in a row, so that
-/// memory does not limit the rate. A processor does a twentieth of the turns, to take about the same time.
+/// memory does not limit the rate; on device host, boxes in all lanes of its vectors. A processor does a
+/// twentieth of the turns, to take about the same time.
 Samples Bench::overlaps(int k) {
     constexpr std::uint32_t most = 2000;
     const auto nodes = device_.allocate(static_cast<std::size_t>(k) * 8, "nodes");
-    const auto counts = device_.allocate(std::size_t{groups_} * group_ * 4, "counts");
+    const auto counts = device_.allocate(std::size_t{groups_} * wide_ * 4, "counts");
     std::vector<float> slabs(static_cast<std::size_t>(k) * 2, 0.0f);
     device_.upload(nodes, bytes_of(slabs));
+    const auto elements = device_.allocate(4, "elements");
     const std::uint32_t rounds = device_.info().is_gpu ? most : most / 20;
     const int axes = k / 2;
-    const auto tests = static_cast<double>(groups_) * group_ * rounds * axes;
-    const auto kernel = compiled<kernels::ceilings::TestOverlaps>(k);
-    return per_second(
-        tests, [&] { launch(kernel, {.nodes = nodes, .counts = counts, .rounds = rounds, .turns = 1u}); });
+    const auto kernel = compiled<kernels::ceilings::TestOverlaps>(wide_, k);
+    const auto test = [&] {
+        device_.launch(
+            kernel, {groups_, wide_},
+            {.nodes = nodes, .counts = counts, .elements = elements, .rounds = rounds, .turns = 1u});
+    };
+    test();
+    std::uint32_t pack = 0;
+    device_.download(elements, std::as_writable_bytes(std::span(&pack, 1)));
+    return per_second(static_cast<double>(groups_) * wide_ * pack * rounds * axes, test);
 }
 
 /// Uses device times, because the host only copies to page-locked memory and does not wait for the transfer.
@@ -126,7 +137,7 @@ Samples Bench::upload_pinned(const Buffer& buffer, std::span<const std::byte> by
 
 /// Device seconds of an empty launch that is timed alone: the time of any kernel is at least as long.
 Samples Bench::timed_launch(const Nothing& nothing, const Buffer& buffer) {
-    auto samples = per_second(1, [&] { device_.launch(nothing, {1, group_}, {.out = buffer}); });
+    auto samples = per_second(1, [&] { device_.launch(nothing, {1, wide_}, {.out = buffer}); });
     for (auto& s : samples) s = 1 / s;
     return samples;
 }
@@ -138,8 +149,8 @@ Ceilings Bench::run() {
     const auto to = device_.allocate(large_, "target");
     const auto words = static_cast<std::uint64_t>(large_ / 8);
     device_.clear(from, large_);
-    const auto copy = compiled<kernels::ceilings::CopyWords>();
-    const auto read = compiled<kernels::ceilings::ReadWords>();
+    const auto copy = compiled<kernels::ceilings::CopyWords>(group_);
+    const auto read = compiled<kernels::ceilings::ReadWords>(group_);
     c.copy = per_second(2.0 * static_cast<double>(large_),
                         [&] { launch(copy, {.from = from, .to = to, .words = words}); });
     const kernels::ceilings::ReadWords once{.from = from, .out = to, .words = words, .rounds = 1u};
@@ -159,8 +170,8 @@ Ceilings Bench::run() {
     c.upload_pageable = rate(seconds(1, [&] { device_.upload(to, bytes, 0, true); }));
     c.download = rate(seconds(1, [&] { device_.download(to, bytes); }));
 
-    const auto nothing = compiled<kernels::ceilings::DoNothing>();
-    const auto submit = [&] { device_.launch(nothing, {1, group_}, {.out = to}); };
+    const auto nothing = compiled<kernels::ceilings::DoNothing>(wide_);
+    const auto submit = [&] { device_.launch(nothing, {1, wide_}, {.out = to}); };
     c.launch = seconds(1, submit);
     constexpr int many = 1000;
     c.launch_queued = seconds(many, [&] {
