@@ -68,9 +68,8 @@ public:
     QueuedFrame enqueue(const FrameView& frame, std::span<const BodyPair> body_pairs) {
         return enqueue_among(frame, body_pairs);
     }
-    /// Waits, and returns the answer of the last frame enqueued, of which the counts of pairs, contacts and
-    /// body pairs are set, and the digest with output=digest; nullopt if it is flagged. Throws InputError if
-    /// none was enqueued since a run() that has grown buffers.
+    /// Waits, and returns the answer of the last frame enqueued; nullopt if it is flagged. Throws InputError
+    /// if none was enqueued since a run() that has grown buffers.
     std::optional<FrameResult> collect() {
         auto result = do_collect();
         return result ? std::optional(finished(*std::move(result))) : std::nullopt;

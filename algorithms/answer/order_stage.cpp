@@ -149,7 +149,8 @@ ContactRows OrderStage::unsorted(const AnswerBuffers& answer) {
     return {contacts_.buffer(contact_ids), contacts_.buffer(contact_values), capacity};
 }
 
-void OrderStage::sort_contacts(const AnswerBuffers& answer, const Status& status) {
+void OrderStage::sort_contacts(const AnswerBuffers& answer, bool reduced, const Status& status) {
+    const std::uint32_t word = reduced ? 1 : 0;
     const StageScope scope(bodies_.device(), Stage::sort);
     const auto pairs = answer.pairs.capacity();
     const auto &masks = masks_.buffer(0), &starts = masks_.buffer(1);
@@ -157,12 +158,14 @@ void OrderStage::sort_contacts(const AnswerBuffers& answer, const Status& status
     bodies_.device().clear(masks, std::size_t{pairs} * 8);
     launch(mark_contacts_, {.contact_ids = ids,
                             .capacity = answer.contacts.capacity(),
+                            .reduced = word,
                             .masks = masks,
                             .status = status.buffer()});
     start_runs(masks, pairs, true, status, starts);
     launch(place_contacts_, {.contact_ids = ids,
                              .contact_values = values,
                              .capacity = answer.contacts.capacity(),
+                             .reduced = word,
                              .masks = masks,
                              .starts = starts,
                              .sorted_ids = answer.contacts.buffer(contact_ids),

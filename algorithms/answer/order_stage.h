@@ -27,8 +27,9 @@ public:
     void sort_pairs(const Buffer& found, std::uint32_t capacity, const Status& status, const Buffer& sorted);
     /// Where the contacts of sorted pairs go until they are sorted. Throws OutOfMemory.
     ContactRows unsorted(const AnswerBuffers& answer);
-    /// Enqueues the sort of the contacts in unsorted() into the answer.
-    void sort_contacts(const AnswerBuffers& answer, const Status& status);
+    /// Enqueues the sort of the contacts in unsorted() into the answer. `reduced`: a reduction writes them,
+    /// none if the contacts before it did not fit.
+    void sort_contacts(const AnswerBuffers& answer, bool reduced, const Status& status);
 
 private:
     template<class Arguments>

@@ -21,9 +21,10 @@ DEVICE void copy_counter(GLOBAL uint* to, GLOBAL const uint* from) {
 }
 
 // Writes the counts of queued.clh. `limits`: rows of two words, the number of a counter in the status and the
-// most that it may have counted. One work-item does it.
+// most that it may have counted. One group does it.
 KERNEL void end_frame(GLOBAL const uint* limits, uint limit_count, GLOBAL const uint* status,
                       GLOBAL uint* counts) {
+    for (uint i = GLOBAL_ID; i < (uint)STATUS_WORDS; i += GLOBAL_COUNT) counts[QUEUED_WORDS + i] = status[i];
     if (GLOBAL_ID != 0u) return;
     uint flag = 0;
     for (uint i = 0; i < limit_count; ++i) {

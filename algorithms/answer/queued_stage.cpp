@@ -24,7 +24,7 @@ QueuedStage::QueuedStage(const Bodies& bodies, LaunchShape shape, std::shared_pt
     auto defines = row_defines(bodies.geometry(), shape.group_size);
     define(defines, parameters::pair_layout, bodies.pair_layout());
     compile_kernel(device, end_, defines);
-    frame_.counts = device.allocate(QUEUED_WORDS * 4, "counts of a queued frame");
+    frame_.counts = device.allocate((QUEUED_WORDS + STATUS_WORDS) * 4, "counts of a queued frame");
     if (stores) {
         compile_kernel(device, name_, defines);
         frame_.pair_capacity = answer_->pairs.capacity();
@@ -60,10 +60,13 @@ void QueuedStage::launch(const Status& status) const {
     device.launch(end_, {1, shape_.group_size}, end);
 }
 
-std::array<std::uint32_t, QUEUED_WORDS> QueuedStage::read() const {
+std::optional<Status::Words> QueuedStage::read() const {
     const StageScope scope(bodies_.device(), Stage::read);
-    std::array<std::uint32_t, QUEUED_WORDS> words{};
-    bodies_.device().download(frame_.counts, std::as_writable_bytes(std::span(words)));
+    std::array<std::uint32_t, QUEUED_WORDS + STATUS_WORDS> all{};
+    bodies_.device().download(frame_.counts, std::as_writable_bytes(std::span(all)));
+    if (all[QUEUED_FLAG] != 0) return std::nullopt;
+    Status::Words words;
+    std::ranges::copy(std::span(all).subspan(QUEUED_WORDS), words.begin());
     return words;
 }
 

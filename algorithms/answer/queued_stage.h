@@ -6,6 +6,8 @@
 #include "algorithms/answer/queued_frame.h"
 #include "algorithms/answer/status.h"
 
+#include <optional>
+
 namespace tandem {
 
 /// A counter of the status (status.clh), and the most that it may count before something is lost.
@@ -27,8 +29,8 @@ public:
     void launch(const Status& status) const;
     /// The frame that launch() ends, without its origin and the memory of other stages.
     const QueuedFrame& frame() const { return frame_; }
-    /// Waits, and reads the counts of the last frame: QUEUED_WORDS words.
-    std::array<std::uint32_t, QUEUED_WORDS> read() const;
+    /// Waits, and reads the status of the last frame; nullopt if it is flagged.
+    std::optional<Status::Words> read() const;
 
 private:
     const Bodies& bodies_;

@@ -35,10 +35,17 @@ KERNEL void count_pairs(GLOBAL const uint* found, uint capacity, GLOBAL const ui
         before[i] = ATOMIC_ADD(counts + places_of(found, i, firsts, places).x, 1u);
 }
 
-// Two words for each pair: bits of the features of its contacts, which differ modulo 64. Each sets one bit.
-KERNEL void mark_contacts(GLOBAL const uint* contact_ids, uint capacity, GLOBAL uint* masks,
-                          GLOBAL const uint* status) {
+// Rows of contacts that were written. If not all fit, a stage that reduces them (`reduced`) has written none.
+DEVICE uint contacts_in(GLOBAL const uint* status, uint capacity, uint reduced) {
     const uint rows = rows_in(status + STATUS_CONTACTS, capacity);
+    const int fit = status[STATUS_CONTACTS + 1] == 0u && status[STATUS_CONTACTS] == rows;
+    return reduced != 0u && !fit ? 0u : rows;
+}
+
+// Two words for each pair: bits of the features of its contacts, which differ modulo 64. Each sets one bit.
+KERNEL void mark_contacts(GLOBAL const uint* contact_ids, uint capacity, uint reduced, GLOBAL uint* masks,
+                          GLOBAL const uint* status) {
+    const uint rows = contacts_in(status, capacity, reduced);
     for (ulong i = GLOBAL_ID; i < rows; i += GLOBAL_COUNT) {
         const WordPair contact = ((GLOBAL const WordPair*)contact_ids)[i];
         ATOMIC_ADD(masks + 2 * (ulong)contact.x + contact.y / 32u % 2u, 1u << contact.y % 32u);
@@ -272,9 +279,9 @@ KERNEL void sort_pairs(GLOBAL const uint* run_starts, uint count, uint capacity,
 
 // Copies each contact to its place: `starts` has that of the first contact of each pair.
 KERNEL void place_contacts(GLOBAL const uint* contact_ids, GLOBAL const real* contact_values, uint capacity,
-                           GLOBAL const uint* masks, GLOBAL const uint* starts, GLOBAL uint* sorted_ids,
-                           GLOBAL real* sorted_values, GLOBAL const uint* status) {
-    const uint count = rows_in(status + STATUS_CONTACTS, capacity);
+                           uint reduced, GLOBAL const uint* masks, GLOBAL const uint* starts,
+                           GLOBAL uint* sorted_ids, GLOBAL real* sorted_values, GLOBAL const uint* status) {
+    const uint count = contacts_in(status, capacity, reduced);
     for (ulong i = GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
         const WordPair contact = ((GLOBAL const WordPair*)contact_ids)[i];
         const WordPair mask = ((GLOBAL const WordPair*)masks)[contact.x];

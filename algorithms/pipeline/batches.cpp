@@ -217,7 +217,7 @@ void BatchRun::walk(const Batch& batch) {
 
 /// Adds the counts of a batch. make_contacts() adds contacts, and run() sets the number of body pairs.
 void BatchRun::add_counts() {
-    auto one = pipeline_.counts();
+    auto one = pipeline_.counts(pipeline_.status.words());
     one.contacts = one.body_pairs = 0;
     result_.add(one, one.summed);
     if (pipeline_.counting) pipeline_.stages.walker->report(pipeline_.status, result_.work);

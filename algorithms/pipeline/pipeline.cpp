@@ -144,21 +144,21 @@ WalkTask Pipeline::task(const AnswerBuffers& answer, LaunchHook* launch_hook) {
             launch_hook};
 }
 
-FrameResult Pipeline::counts() const {
+FrameResult Pipeline::counts(const Status::Words& words) const {
     FrameResult result;
-#define TANDEM_READ(member, word) result.member = status.counter(word);
+    const auto counter = [&](std::size_t word) { return words[word] | std::uint64_t{words[word + 1]} << 32; };
+#define TANDEM_READ(member, word) result.member = counter(word);
 #define TANDEM_KEEP(member)
     TANDEM_FRAME_COUNTS(TANDEM_READ, TANDEM_KEEP)
 #undef TANDEM_READ
 #undef TANDEM_KEEP
     result.batches = 1;
     if (output == Output::digest)
-        result.summed =
-            Digest{result.count, status.counter(STATUS_DIGEST_A), status.counter(STATUS_DIGEST_B)};
+        result.summed = Digest{result.count, counter(STATUS_DIGEST_A), counter(STATUS_DIGEST_B)};
     return result;
 }
 
-void Pipeline::add_part(FrameResult& result, std::shared_ptr<AnswerBuffers> buffers) const {
+void Pipeline::add_part(FrameResult& result, std::shared_ptr<const AnswerBuffers> buffers) const {
     if (has_pairs(output))
         result.parts.push_back(device_part(tools, std::move(buffers), result.count, result.contacts));
 }

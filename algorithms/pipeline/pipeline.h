@@ -38,9 +38,9 @@ struct Pipeline {
     WalkTask task(const AnswerBuffers& answer, LaunchHook* launch_hook = nullptr);
     bool makes_contacts() const { return contacts != nullptr && !counting; }
     /// A result with the counts of the status, without parts.
-    FrameResult counts() const;
+    FrameResult counts(const Status::Words& words) const;
     /// Adds the part for pairs and contacts in `buffers` to the result.
-    void add_part(FrameResult& result, std::shared_ptr<AnswerBuffers> buffers) const;
+    void add_part(FrameResult& result, std::shared_ptr<const AnswerBuffers> buffers) const;
 
     Device& device;
     Settings settings;

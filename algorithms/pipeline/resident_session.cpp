@@ -100,7 +100,8 @@ void ResidentSession::walk(const AnswerBuffers& answer) {
     const auto made = pipeline_.reduction ? pipeline_.reduction->source(answer) : kept;
     pipeline_.contacts->launch(answer.pairs.buffer(), made, 0, answer.pairs.capacity(), pipeline_.status);
     if (pipeline_.reduction) pipeline_.reduction->launch(answer, kept, task.pair_capacity, pipeline_.status);
-    if (pipeline_.order) pipeline_.order->sort_contacts(answer, pipeline_.status);
+    if (pipeline_.order)
+        pipeline_.order->sort_contacts(answer, pipeline_.reduction != nullptr, pipeline_.status);
 }
 
 /// Grows all buffers to the counts of the status. Returns true if the walk must run again.
@@ -159,7 +160,7 @@ FrameResult ResidentSession::run_whole(const Input& input) {
         pipeline_.status.read();
     }
     if (retries > 0) queued_.reset();
-    auto result = pipeline_.counts();
+    auto result = pipeline_.counts(pipeline_.status.words());
     result.retries = retries;
     if (pipeline_.counting) pipeline_.stages.walker->report(pipeline_.status, result.work);
     pipeline_.add_part(result, std::move(answer));
@@ -271,17 +272,9 @@ QueuedFrame ResidentSession::do_enqueue(const FrameInput* host, const DeviceFram
 std::optional<FrameResult> ResidentSession::do_collect() {
     if (!queued_ || !queued_->end) return Session::do_collect();
     const auto words = queued_->end->read();
-    const auto number = [&](std::size_t word) { return words[word] | std::uint64_t{words[word + 1]} << 32; };
-    if (number(QUEUED_FLAG) != 0) return std::nullopt;
-    FrameResult result;
-    result.count = number(QUEUED_PAIRS);
-    result.contacts = number(QUEUED_CONTACTS);
-    result.body_pairs = number(QUEUED_BODY_PAIRS);
-    result.batches = 1;
-    if (pipeline_.output == Output::digest)
-        result.summed = Digest{result.count, number(QUEUED_DIGEST_A), number(QUEUED_DIGEST_B)};
-    if (has_pairs(pipeline_.output))
-        result.parts.push_back(device_part(pipeline_.tools, queued_->answer, result.count, result.contacts));
+    if (!words) return std::nullopt;
+    auto result = pipeline_.counts(*words);
+    pipeline_.add_part(result, queued_->answer);
     return result;
 }
 

@@ -119,7 +119,7 @@ FrameResult PublishedSession::run_whole() {
     auto answer = pipeline_.answers->take();
     std::uint64_t retries = 0;
     for (walk(*answer); grow(*answer); walk(*answer)) ++retries;
-    auto result = pipeline_.counts();
+    auto result = pipeline_.counts(pipeline_.status.words());
     result.retries = retries;
     if (pipeline_.counting) pipeline_.stages.walker->report(pipeline_.status, result.work);
     sort_contacts(*answer, result.contacts);

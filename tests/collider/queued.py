@@ -25,6 +25,26 @@ class Queued(ColliderCase):
                 right.digest(),
             )
 
+    def test_collected_counts_are_those_of_run(self):
+        flat = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0.0]], [[0, 1, 2, 3]]
+        solid = [[0, 0, -0.5], [1, 0, -0.5], [0, 1, -0.5], [0, 0, 0.5]], [[0, 1, 2, 3]]
+        for device in DEVICES:
+            collider = tandem.Collider([flat, solid, solid], device=device)
+            counts = lambda answer: (answer.count, answer.contact_count, answer.degenerate)
+            self.assertEqual(counts(collider.enqueue().collect()), counts(collider.run()))
+            self.assertEqual(collider.run().degenerate, 2)
+
+    def test_a_buffer_too_small_before_the_sort(self):
+        """Rows that distances leave are sorted, and none are left if not all contacts fitted."""
+        poses = numpy.array([[0.5 * i, 0, 0, 1, 0, 0, 0] for i in range(3)])
+        tet = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]], [[0, 1, 2, 3]]
+        given = {"contact_rule": "distance", "output": "distances", "order": "canonical"}
+        for device in DEVICES:
+            collider = tandem.Collider([tet], bodies=[0] * 3, device=device, contact_capacity=1, **given)
+            queued = collider.enqueue(poses)
+            self.assertIsNone(queued.collect())
+            self.assertEqual(collider.run(poses).contact_count, 3)
+
     def test_arrays_have_the_answer_in_memory_of_the_device(self):
         for precision, kind in (("float", numpy.float32), ("double", numpy.float64)):
             collider = self.collider(device="host", precision=precision, order="canonical")

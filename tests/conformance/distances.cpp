@@ -109,7 +109,8 @@ TEST_P(DistancesOf, OfEachBodyPairTheLeastStays) {
     const auto right = closest_of(all.download_contacts());
     ASSERT_GT(right.size(), 4u);
     for (const SettingTexts& cell : {SettingTexts{}, SettingTexts{{"order", "canonical"}},
-                                     SettingTexts{{"pair_capacity", "1"},
+                                     SettingTexts{{"order", "canonical"},
+                                                  {"pair_capacity", "1"},
                                                   {"contact_capacity", "1"},
                                                   {"body_pair_capacity", "1"},
                                                   {"broad", "device"}}}) {

@@ -68,6 +68,7 @@ TEST_P(WrenchesOf, EveryAlgorithmHasTheSumsOfTheReference) {
         cells.push_back({{"output", "wrenches"},
                          {"contact_rule", "pressure"},
                          {"group_size", "64"},
+                         {"order", "canonical"},
                          {"contact_capacity", "1"},
                          {"pair_capacity", "1"}});
     }
