@@ -164,10 +164,10 @@ std::string verdict_sentence(const Verdict& verdict, std::span<const Row> rows,
     const auto ms = milliseconds(first.median_ns * 1e-6 / frames);
     std::string text;
     if (!next.has_interval())
-        text =
-            fmt::format("{} took the least time in one round: {} ms per frame, {:.3g} times as fast as {}; "
-                        "--repeat 5 gives an interval",
-                        label(first), ms, next.ratio.value, label(next));
+        text = fmt::format(
+            "{} took the least time, in fewer than 5 rounds: {} ms per frame, {:.3g} times as fast as {}; "
+            "--repeat 5 gives an interval",
+            label(first), ms, next.ratio.value, label(next));
     else if (!next.is_told_apart())
         text = not_told_apart(verdict, labels);
     else
@@ -219,7 +219,7 @@ struct RankedRow {
     const RankedCell& cell;
     const Row& row;
 
-    /// Null for fewer than two rounds.
+    /// Null for fewer than five rounds.
     template<class Value>
     Json with_interval(Value value) const {
         return cell.has_interval() ? Json(value) : Json();
@@ -238,7 +238,7 @@ const Fields<RankedRow>& ranked_fields() {
         {"ratio", number_above(0),
          "time of this cell to that of the fastest: median of the ratios of those rounds",
          [](auto& r) { return r.cell.ratio.value; }},
-        {"low", nullable(number_above(0)), "lower end of its 95 % interval; null for fewer than two rounds",
+        {"low", nullable(number_above(0)), "lower end of its 95 % interval; null for fewer than five rounds",
          [](auto& r) { return r.with_interval(r.cell.ratio.low); }},
         {"high", nullable(number_above(0)), "upper end",
          [](auto& r) { return r.with_interval(r.cell.ratio.high); }},

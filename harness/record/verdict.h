@@ -28,9 +28,11 @@ struct RankedCell {
     std::size_t row = 0;    ///< index of its row
     double median_ns = 0;   ///< of its rounds; a replay of all frames
     std::size_t rounds = 0; ///< rounds that both have; their ratios are paired
-    Ratio ratio; ///< its time to that of the fastest; without an interval for fewer than two rounds
+    Ratio ratio; ///< its time to that of the fastest; without an interval for fewer rounds than five
 
-    bool has_interval() const { return rounds > 1; }
+    /// The ratios of all of n rounds lie on one side of the true one by chance in 2 of 2^n cases: 6 % for
+    /// five.
+    bool has_interval() const { return rounds >= 5; }
     /// Whether the interval excludes 1.
     bool is_told_apart() const { return has_interval() && (ratio.low > 1 || ratio.high < 1); }
 };

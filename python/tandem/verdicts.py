@@ -12,12 +12,13 @@ from . import lines
 from .ratio import Ratio
 
 ONE = Ratio(1.0, 1.0, 1.0, 0.0)
+ROUNDS = 5  # from which a ratio has an interval: all of n lie on one side by chance in 2 of 2^n cases
 
 
 @dataclasses.dataclass(frozen=True)
 class Ranked:
     """A cell, compared with the fastest. cell: its index. ratio: its time to that of the fastest.
-    has_interval: there are at least two rounds. is_told_apart: the interval excludes 1."""
+    has_interval: there are at least ROUNDS rounds. is_told_apart: the interval excludes 1."""
 
     cell: int
     ratio: Ratio = ONE
@@ -62,17 +63,17 @@ def _compared(number, base, cell):
             ratio = resampling.paired_ratio(
                 [base.rounds[at] for at in common], [cell.rounds[at] for at in common]
             )
-            return Ranked(number, ratio, len(common) > 1)
+            return Ranked(number, ratio, len(common) >= ROUNDS)
         value = _median(cell) / _median(base)
         return Ranked(number, Ratio(value, value, value, 0.0), False)
     ratio = resampling.unpaired_ratio(list(base.rounds.values()), list(cell.rounds.values()))
-    return Ranked(number, ratio, min(len(base.rounds), len(cell.rounds)) > 1)
+    return Ranked(number, ratio, min(len(base.rounds), len(cell.rounds)) >= ROUNDS)
 
 
 def _ranked(cells, first, order):
     """All of them, compared with the first; the others by their ratios."""
     rest = (_compared(number, cells[first], cells[number]) for number in order if number != first)
-    own = Ranked(first, ONE, len(cells[first].rounds) > 1)
+    own = Ranked(first, ONE, len(cells[first].rounds) >= ROUNDS)
     return [own, *sorted(rest, key=lambda one: one.ratio.value)]
 
 

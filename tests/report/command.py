@@ -70,7 +70,7 @@ class Commands(Case):
     def test_one_session_needs_no_scipy(self):
         """Its verdict is recorded. Another verdict, and the verdict on a part of its cells, need scipy."""
         records, page = self.work / "session.jsonl", self.work / "numpy.html"
-        chosen = ["--algorithm", "tiled,chunked", "--set", "seed_threshold=0,10,100", "--repeat", 3]
+        chosen = ["--algorithm", "tiled,chunked", "--set", "seed_threshold=0,10,100", "--repeat", 5]
         status, text, errors = tandem("run", "plates", "--frames", "60:60", *chosen, "--out", records)
         self.assertEqual((status, errors), (0, []), text)
         done = self.without_packages(records, f"--output={page}", "--sentences")

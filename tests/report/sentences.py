@@ -90,7 +90,9 @@ class Sentences(unittest.TestCase):
             (
                 [cell_of("a", [1.0]), cell_of("b", [2.0])],
                 [0, 1],
-                ["a took the least time in one round: 1.00 ms per frame, 2.00 times as fast as b."],
+                [
+                    "a took the least time, in fewer than 5 rounds: 1.00 ms per frame, 2.00 times as fast as b."
+                ],
             ),
             (
                 [b, cell_of("a", ONE_MS, status="wrong"), cell_of("c", ONE_MS, **failed), older],
@@ -147,7 +149,7 @@ class Sentences(unittest.TestCase):
                 [
                     a,
                     b,
-                    cell_of("a", [4.0, 4.1], "8"),
+                    cell_of("a", [4.0, 4.1, 4.05, 4.0, 4.1], "8"),
                     cell_of("b", ONE_MS, "8"),
                     elsewhere,
                     cell_of("a", THREE_MS, "8", scene=elsewhere.record["scene"]),
@@ -225,7 +227,7 @@ class Sentences(unittest.TestCase):
             (NEARLY_ONE_MS, "a and b cannot be told apart: 1.00 ms per frame, ratio [", [True, True]),
             (
                 [2.0],
-                "a took the least time in one round: 1.00 ms per frame, 2.00 times as fast as b",
+                "a took the least time, in fewer than 5 rounds: 1.00 ms per frame, 2.00 times as fast as b",
                 [True, False],
             ),
         ):

@@ -68,7 +68,7 @@ class Sweeps(unittest.TestCase):
                 "seed_threshold",
                 [[1.0], [2.0], [3.0]],
                 0,
-                "= 1 took the least time in one round: 1.00 ms per frame, 2.00 times as fast",
+                "= 1 took the least time, in fewer than 5 rounds: 1.00 ms per frame, 2.00 times as fast",
             ),
             ("seed_threshold", times, 3, "Answers differ: these times are of different work"),
             ("k", times, 3, "k = 1 is fastest: "),

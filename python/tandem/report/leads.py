@@ -3,10 +3,12 @@
 
 import dataclasses
 
+from ..verdicts import ROUNDS
 from .numbers import digits, ratio_digits
 
 MAX_NAMED = 4  # of cells that cannot be told apart
 ONE_ROUND = "one round: no interval"
+FEW_ROUNDS = f"fewer than {ROUNDS} rounds: no interval"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -21,7 +23,7 @@ class Named:
 def ratio_text(ratio, has_interval):
     """ "2.17 [2.14, 2.18]" """
     value, low, high = ratio_digits(ratio)
-    return f"{value} {f'[{low}, {high}]' if has_interval else f'({ONE_ROUND})'}"
+    return f"{value} {f'[{low}, {high}]' if has_interval else f'({FEW_ROUNDS})'}"
 
 
 def is_slower(ranked):
@@ -54,7 +56,7 @@ def title(cells, answers_differ=False):
     ratio, low, high = ratio_digits(second.ratio)
     faster = f"{ratio} times as fast as {rest[0].name}"
     if not second.has_interval:
-        return f"{first.name} took the least time in one round: {ms}, {faster}"
+        return f"{first.name} took the least time, in fewer than {ROUNDS} rounds: {ms}, {faster}"
     if is_slower(second):
         return f"{first.name} is fastest: {ms}, {faster} [{low}, {high}]"
     tied = [one.name for one in cells if is_leader(one.ranked, first.ranked)]

@@ -16,6 +16,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::StartsWith;
 
 /// Cells of one run with made-up times.
 class RecordVerdict : public testing::Test {
@@ -55,9 +56,9 @@ protected:
 };
 
 TEST_F(RecordVerdict, TheFastestIsFirstAndOthersFollowByTheirRatios) {
-    add({3000000, 3000001, 3000000});
-    add({1000000, 1000001, 1000000});
-    add({2000000, 2000001, 2000000});
+    add({3000000, 3000001, 3000000, 3000000, 3000000});
+    add({1000000, 1000001, 1000000, 1000000, 1000000});
+    add({2000000, 2000001, 2000000, 2000000, 2000000});
     EXPECT_THAT(order(verdict()), ElementsAre(1, 2, 0));
     EXPECT_NEAR(verdict().cells[1].ratio.value, 2, 1e-6);
     EXPECT_TRUE(verdict().cells[1].is_told_apart());
@@ -99,6 +100,14 @@ TEST_F(RecordVerdict, OneRoundHasNoInterval) {
     EXPECT_EQ(line["cells"][1]["rounds"], 1);
     EXPECT_TRUE(line["cells"][1]["low"].is_null() && line["cells"][1]["told_apart"].is_null());
     EXPECT_THAT(sentence(), HasSubstr("2 times as fast as B; --repeat 5 gives an interval"));
+}
+
+/// All four ratios lie on one side by chance in an eighth of all runs.
+TEST_F(RecordVerdict, FourRoundsHaveNoInterval) {
+    add({1000000, 1000001, 1000000, 1000000});
+    add({2000000, 2000001, 2000000, 2000000});
+    EXPECT_FALSE(verdict().cells[1].is_told_apart());
+    EXPECT_THAT(sentence(), StartsWith("A took the least time, in fewer than 5 rounds: "));
 }
 
 TEST_F(RecordVerdict, OtherPairsHaveNoFastest) {

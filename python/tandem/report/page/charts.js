@@ -94,6 +94,7 @@ tandem.pointNames = {
 };
 
 tandem.oneRound = "one round: no interval";
+tandem.fewRounds = "fewer than 5 rounds: no interval"; // of a ratio: ROUNDS in verdicts.py
 tandem.brackets = (low, high) => low === null ? "-" : `[${tandem.number(low)}, ${tandem.number(high)}]`;
 /** The 95 % interval of a cell's time, and its time with the interval. */
 tandem.intervalText = ({ms, rounds}) => rounds > 1 ? tandem.brackets(ms[1], ms[2]) : tandem.oneRound;

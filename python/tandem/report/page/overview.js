@@ -20,7 +20,7 @@ tandem.methodColours = ({overview: {methods}}, cells) => {
 /** The numbers of all comparisons: cells with their ratios to the fastest. */
 tandem.comparisonRows = groups => groups.flatMap(group => group.ranked.map(([, ratio, low, high, apart], i) =>
   [group.row, group.cells[i].label, group.cells[i].ms[0], tandem.intervalText(group.cells[i]), ratio,
-    i === 0 ? "" : apart === null ? tandem.oneRound : tandem.brackets(low, high), i === 0 || apart === null ? "" : apart ? "yes" : "no"]));
+    i === 0 ? "" : apart === null ? tandem.fewRounds : tandem.brackets(low, high), i === 0 || apart === null ? "" : apart ? "yes" : "no"]));
 
 /** Points of a method: those of its fastest cells, or of its wrong ones, which are crossed out. */
 tandem.methodPoints = (cells, rows, method, methods) => {
