@@ -82,7 +82,7 @@ struct DeviceWork {
     /** passed to run(), or found */ ON_DEVICE(body_pairs, STATUS_BODY_PAIRS) \
     /** contact points; 0 unless output=pairs */ ON_DEVICE(contacts, STATUS_CONTACTS) \
     /** pairs without the boundary faces that the contact rule needs */ ON_DEVICE(without_boundary, STATUS_WITHOUT_BOUNDARY) \
-    /** pairs without contacts because a tetrahedron has no volume */ ON_DEVICE(degenerate, STATUS_DEGENERATE) \
+    /** pairs without contacts because the sign of a tetrahedron's volume is not certain */ ON_DEVICE(degenerate, STATUS_DEGENERATE) \
     /** pairs with a separating axis */ ON_DEVICE(rejected, STATUS_REJECTED) \
     /** by the certified filter (decision=recheck, exact) */ ON_DEVICE(undecided_by_filter, STATUS_UNDECIDED_BY_FILTER) \
     /** by double precision (decision=recheck, fp64, exact) */ ON_DEVICE(undecided_by_double, STATUS_UNDECIDED_BY_DOUBLE) \

@@ -6,7 +6,9 @@
 #include "algorithms/bodies/range.h"
 #include "algorithms/bounds/geometry.h"
 #include "algorithms/parameters/table.h"
+#include "harness/plans/cell_session.h"
 #include "harness/plans/inputs.h"
+#include "harness/plans/key.h"
 #include "base/standard_streams.h"
 #include "base/text_lines.h"
 #include "base/error.h"
@@ -37,6 +39,27 @@ void fit_coordinates(Task& task, const Unfit& unfit) {
     });
 }
 
+/// Removes cells whose sessions have the settings of an earlier cell, because some have no effect on its
+/// device, such as group_size on host, or name what another value means, such as slabs=usual. Their records
+/// would have equal keys.
+void drop_equal_sessions(Task& task) {
+    std::map<std::string, std::string> first; // descriptions by key
+    std::erase_if(task.cells, [&](const Cell& cell) {
+        if (!cell.candidates.empty()) return false; // of auto: its key is that of the choice
+        std::string key;
+        try {
+            key = key_of(cell, session_settings(cell, task.scene), task.scene, task.range);
+        } catch (const InputError&) {
+            return false; // reported where the cell is prepared
+        }
+        const auto [found, is_new] = first.try_emplace(key, describe(cell));
+        if (!is_new)
+            print_message("tandem: skipped a cell: {} has the settings of {}\n", describe(cell),
+                          found->second);
+        return !is_new;
+    });
+}
+
 } // namespace
 
 Task open_task(const RunOptions& options, std::vector<Cell> cells, const Unfit& unfit) {
@@ -50,6 +73,7 @@ Task::Task(Scene opened, const RunOptions& given, std::vector<Cell> planned, con
       cells(std::move(planned)) {
     check_outputs(options, cells);
     fit_coordinates(*this, unfit);
+    drop_equal_sessions(*this);
 }
 
 std::filesystem::path checks_folder(const RunOptions& options) {

@@ -103,7 +103,8 @@ class Answer:
 
     @property
     def degenerate(self) -> int:
-        """Number of pairs without contacts because a tetrahedron has no volume."""
+        """Number of pairs without contacts because a tetrahedron has no volume, or one whose sign is not certain in
+        this precision."""
         return self._core.degenerate
 
     @property

@@ -132,6 +132,35 @@ class Plans(PlanCase):
         self.assertEqual(len(self.errors), 1)
         self.assertIn("skipped a cell: body 0", self.errors[0])
 
+    def test_cells_that_differ_only_in_what_has_no_effect(self):
+        """They are one cell: records with equal keys would contradict each other."""
+        records = self.work / "equal.jsonl"
+        given = (
+            "plates",
+            "--frames",
+            20,
+            "--device",
+            "host",
+            "--algorithm",
+            "tiled",
+            "--no-check",
+            "--no-count",
+        )
+        for setting, kept in (
+            ("group_size=32,64", "group_size=32"),
+            ("slabs=touched,usual", "slabs=touched"),
+        ):
+            with self.subTest(setting):
+                words = ("--set", setting, "--repeat", 1, "--truth", "none", "--out", records)
+                status, out, errors = tandem("run", *given, *words)
+                self.assertEqual(status, 0, errors)
+                self.assertEqual(len(errors), 1, errors)
+                self.assertRegex(
+                    errors[0], f"^tandem: skipped a cell: .+ on host has the settings of tiled {kept}"
+                )
+                self.assertEqual(len(records.read_text().splitlines()), 1)
+                records.unlink()
+
     def test_scenes_that_do_not_exist_yet(self):
         path = self.plan(scenes=["to-be-made.frames", SMALL])
         status, text, errors = tandem("run", path, "--dry-run")

@@ -25,7 +25,7 @@ CLAIMS = {
     "thousand-launches": "Launches fall by up to three orders of magnitude: times fewer",
     "launches": "The same for each of the paper's GPUs: times fewer",
 }
-BYTES = ("500", "2000", "8000", "32000", "128000", "512000")
+BYTES = ("2000", "8000", "32000", "128000", "512000")
 
 
 def name_of(record):
@@ -59,6 +59,8 @@ def chunk_bytes():
     rows = {}
     for record in records(FOLDER / "chunk-study.jsonl.xz"):
         own = record["settings"]
+        if own["builder"] == "median":
+            continue
         at = rows.setdefault((name_of(record), own["k"], own["builder"]), {})
         at[own["chunk_bytes"]] = Cell(record).median_ms
     shown = []
