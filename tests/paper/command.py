@@ -58,6 +58,7 @@ class Paper(unittest.TestCase):
             for scene in ("funnel", "glasses", "colosseum", "plates", "tower"):
                 self.assertIn(f"cells-{scene}", listed)
             self.assertIn("left", listed.splitlines()[-1])
+            self.assertFalse((self.folder / size).exists())
             self.assertLessEqual(max(step.seconds for step in steps_of(size, "host")), 480)
 
     def test_simulations_with_a_preset_run(self):

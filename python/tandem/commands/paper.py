@@ -9,7 +9,7 @@ import subprocess
 
 from ..csv_fields import fields
 from ..errors import BadUse, OutputError
-from ..files import check_output
+from ..files import check_output, temporary_folder
 from ..paper import measuring
 from ..sequences.needs import Machine
 from ..text_lines import visible
@@ -170,10 +170,13 @@ def _make(options, program):
         return draw(options.output)
     steps = measuring.steps_of(options.size, options.device)
     numbers = measuring.chosen(options.steps, steps)
-    runner = measuring.measured_folder(options.output, options.size, options.device, program)
+    folder_of = lambda path: measuring.measured_folder(path, options.size, options.device, program)
     if options.dry_run:
-        measuring.list_steps(runner, steps)
+        with temporary_folder() as empty:  # a list makes no folder
+            is_there = pathlib.Path(options.output).exists()
+            measuring.list_steps(folder_of(options.output if is_there else empty), steps)
         return 0
+    runner = folder_of(options.output)
     if any(measuring.runs_on(steps[number], options.device) for number in numbers):
         check_device(program, options.device)
     if options.again:
