@@ -30,12 +30,14 @@ public:
     /// found one not to hold (STATUS_EXCEEDED).
     void read();
     /// The 64-bit counter whose low word is number `word`, as last read or written.
-    std::uint64_t counter(std::size_t word) const {
-        return words_[word] | std::uint64_t{words_[word + 1]} << 32;
-    }
+    std::uint64_t counter(std::size_t word) const { return counter_in(words_, word); }
 
     /// All words, as last read or written.
     using Words = std::array<std::uint32_t, STATUS_WORDS>;
+    /// The 64-bit counter of `words` whose low word is number `word`.
+    static std::uint64_t counter_in(const Words& words, std::size_t word) {
+        return words[word] | std::uint64_t{words[word + 1]} << 32;
+    }
     const Words& words() const { return words_; }
     void write(const Words& words);
 

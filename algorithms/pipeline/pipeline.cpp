@@ -146,15 +146,15 @@ WalkTask Pipeline::task(const AnswerBuffers& answer, LaunchHook* launch_hook) {
 
 FrameResult Pipeline::counts(const Status::Words& words) const {
     FrameResult result;
-    const auto counter = [&](std::size_t word) { return words[word] | std::uint64_t{words[word + 1]} << 32; };
-#define TANDEM_READ(member, word) result.member = counter(word);
+#define TANDEM_READ(member, word) result.member = Status::counter_in(words, word);
 #define TANDEM_KEEP(member)
     TANDEM_FRAME_COUNTS(TANDEM_READ, TANDEM_KEEP)
 #undef TANDEM_READ
 #undef TANDEM_KEEP
     result.batches = 1;
     if (output == Output::digest)
-        result.summed = Digest{result.count, counter(STATUS_DIGEST_A), counter(STATUS_DIGEST_B)};
+        result.summed = Digest{result.count, Status::counter_in(words, STATUS_DIGEST_A),
+                               Status::counter_in(words, STATUS_DIGEST_B)};
     return result;
 }
 

@@ -37,7 +37,7 @@ struct Pipeline {
     /// The task to walk the current body pairs.
     WalkTask task(const AnswerBuffers& answer, LaunchHook* launch_hook = nullptr);
     bool makes_contacts() const { return contacts != nullptr && !counting; }
-    /// A result with the counts of the status, without parts.
+    /// A result with the counts of a status, without parts.
     FrameResult counts(const Status::Words& words) const;
     /// Adds the part for pairs and contacts in `buffers` to the result.
     void add_part(FrameResult& result, std::shared_ptr<const AnswerBuffers> buffers) const;

@@ -49,6 +49,7 @@ void drop_equal_sessions(Task& task) {
         std::string key;
         try {
             key = key_of(cell, session_settings(cell, task.scene), task.scene, task.range);
+            for (const auto& info : infos_of(cell)) key += "|" + info.id; // keys have models only
         } catch (const InputError&) {
             return false; // reported where the cell is prepared
         }

@@ -135,24 +135,14 @@ class Plans(PlanCase):
     def test_cells_that_differ_only_in_what_has_no_effect(self):
         """They are one cell: records with equal keys would contradict each other."""
         records = self.work / "equal.jsonl"
-        given = (
-            "plates",
-            "--frames",
-            20,
-            "--device",
-            "host",
-            "--algorithm",
-            "tiled",
-            "--no-check",
-            "--no-count",
-        )
+        given = "plates --frames 20 --device host --algorithm tiled --no-check --no-count"
         for setting, kept in (
             ("group_size=32,64", "group_size=32"),
             ("slabs=touched,usual", "slabs=touched"),
         ):
             with self.subTest(setting):
                 words = ("--set", setting, "--repeat", 1, "--truth", "none", "--out", records)
-                status, out, errors = tandem("run", *given, *words)
+                status, out, errors = tandem(f"run {given}", *words)
                 self.assertEqual(status, 0, errors)
                 self.assertEqual(len(errors), 1, errors)
                 self.assertRegex(
@@ -160,6 +150,13 @@ class Plans(PlanCase):
                 )
                 self.assertEqual(len(records.read_text().splitlines()), 1)
                 records.unlink()
+
+    def test_devices_of_one_model_are_several_cells(self):
+        """Keys have models, but each device is measured."""
+        words = ("run plates --frames 20 --algorithm tiled --device opencl:0,opencl:1", "--dry-run")
+        status, out, errors = tandem(*words, environment={"POCL_DEVICES": "pthread pthread"})
+        self.assertEqual((status, errors), (0, []))
+        self.assertEqual(re.findall(r"tiled on (\S+)", out), ["opencl:0", "opencl:1"])
 
     def test_scenes_that_do_not_exist_yet(self):
         path = self.plan(scenes=["to-be-made.frames", SMALL])

@@ -66,7 +66,10 @@ def _write(options, program):
             f"--against {options.against}: two sets of records are compared; give one FILE beside it"
         )
     check_output(
-        options.output, [*options.files, *filter(None, (options.against, options.scene))], ".partial", True
+        options.output,
+        [*options.files, *filter(None, (options.against, options.scene))],
+        ".partial",
+        is_page=True,
     )
     page = open_page("Report of tandem", True, bool(options.scene), program, "tandem report")
     from ..report.data import data_of, size_of

@@ -36,7 +36,7 @@ def _file_name(scene):
 def _make(options, program):
     if options.output:
         check_output(
-            options.output, [*filter(None, (options.scene,)), *(options.mesh or ())], ".partial", True
+            options.output, [*filter(None, (options.scene,)), *(options.mesh or ())], ".partial", is_page=True
         )
     page = open_page("", False, True, program, "tandem view")
     scene = shown_scene(program, words_of(options.scene, options), options.output)
@@ -44,7 +44,7 @@ def _make(options, program):
     page.sections = [scene_section(scene.key)]
     path = options.output or _file_name(scene.name)
     if not options.output:
-        check_output(path, (), ".partial", True)
+        check_output(path, (), ".partial", is_page=True)
     written = write_page(path, page)
     return (
         f"{path}: {scene.frames} {'frame' if scene.frames == 1 else 'frames'} of {scene.key}, {written / 1e6:.1f} MB\n",
