@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-# tandem_unity(TARGET [EXPRESSION...]): compiles the files of a folder together, which takes a third of the time.
-# Files of one unit share one unnamed namespace, where names can clash. Files whose path matches EXPRESSION form a unit
-# of their own; the path is relative to the root and without .cpp. Scenes are compiled one by one, because each defines
-# make().
+# tandem_unity(TARGET [EXPRESSION...]): compiles files together, which takes a fifth of the time: headers and templates
+# of each unit cost as much as its code. Files whose path matches EXPRESSION form a unit, the last one that matches; the
+# path is relative to the root and without .cpp. Other files form a unit per folder.
+# Files of one unit share one unnamed namespace. Where names clash, rename one, or give its file an EXPRESSION.
 function(tandem_unity target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   get_target_property(sources ${target} SOURCES)
@@ -14,9 +14,6 @@ function(tandem_unity target)
       continue()
     endif()
     cmake_path(GET path PARENT_PATH group)
-    if(group STREQUAL "scenes/kinds")
-      continue()
-    endif()
     foreach(expression ${ARGN})
       if(path MATCHES "^${expression}\\.cpp$")
         set(group ${expression})

@@ -9,7 +9,7 @@ namespace tandem {
 
 namespace {
 
-constexpr std::uint32_t found = 15; ///< all answer bits of pair_list.cl
+constexpr std::uint32_t answer_bits = 15; ///< all answer bits of pair_list.cl
 
 } // namespace
 
@@ -49,7 +49,7 @@ std::vector<std::uint8_t> PairList::run() {
     device.download(answers_, std::as_writable_bytes(std::span(answers)));
     std::vector<std::uint8_t> result(count_);
     std::transform(answers.begin(), answers.end(), result.begin(),
-                   [](std::uint32_t bits) { return static_cast<std::uint8_t>(bits == found ? 1 : 0); });
+                   [](std::uint32_t bits) { return static_cast<std::uint8_t>(bits == answer_bits ? 1 : 0); });
     return result;
 }
 

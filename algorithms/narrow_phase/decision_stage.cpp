@@ -13,7 +13,7 @@ constexpr std::uint8_t verdict_apart = 1, verdict_meets = 2;
 /// Two tetrahedra of four corners of three coordinates.
 constexpr std::size_t corner_reals = 24;
 
-using Corners = std::array<std::array<double, 3>, 4>;
+using DecidedCorners = std::array<std::array<double, 3>, 4>;
 
 /// Verdicts of pairs whose corners are in the layout of gather_corners.
 template<class Real>
@@ -22,7 +22,7 @@ std::vector<std::uint8_t> verdicts_of(const std::vector<std::byte>& bytes) {
     std::memcpy(reals.data(), bytes.data(), bytes.size());
     std::vector<std::uint8_t> verdicts(reals.size() / corner_reals);
     for (std::size_t i = 0; i < verdicts.size(); ++i) {
-        std::array<Corners, 2> pair{};
+        std::array<DecidedCorners, 2> pair{};
         for (std::size_t k = 0; k < corner_reals; ++k)
             pair[k / 12][k % 12 / 3][k % 3] = static_cast<double>(reals[corner_reals * i + k]);
         verdicts[i] = meet_exactly(pair[0], pair[1]) ? verdict_meets : verdict_apart;

@@ -41,20 +41,20 @@ void from_json(const nlohmann::ordered_json& from, FrameCounts& counts) {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 using record_parts::Fields, record_parts::member;
 
 /// The items (replays or conditions) of round `first` and later rounds.
 template<class Item>
-Json from_round(const std::vector<Item>& items, std::uint32_t first) {
-    auto list = Json::array();
+OrderedJson from_round(const std::vector<Item>& items, std::uint32_t first) {
+    auto list = OrderedJson::array();
     for (const auto& item : items)
         if (item.round >= first) list.push_back(item);
     return list;
 }
 
 template<class Item>
-void append(std::vector<Item>& items, const Json& more) {
+void append(std::vector<Item>& items, const OrderedJson& more) {
     for (const auto& item : more) items.push_back(item.get<Item>());
 }
 
@@ -63,7 +63,7 @@ std::map<std::string, std::uint64_t> named(const std::map<std::string_view, std:
 }
 
 /// Uses the algorithm's own names as keys: their storage lives as long as the algorithm.
-std::map<std::string_view, std::uint64_t> counted(const Json& work, const Traversal& algorithm) {
+std::map<std::string_view, std::uint64_t> counted(const OrderedJson& work, const Traversal& algorithm) {
     std::map<std::string_view, std::uint64_t> counts;
     for (const auto& counter : algorithm.counters())
         if (const auto found = work.find(counter.name); found != work.end())
@@ -104,25 +104,25 @@ const Fields<CellState>& round_state_fields() {
 
 } // namespace
 
-Json checked_json(const CellState& state) {
+OrderedJson checked_json(const CellState& state) {
     const auto& m = state.measurement;
-    Json to{{"settings", m.settings.texts()}, {"work", named(m.work)}};
+    OrderedJson to{{"settings", m.settings.texts()}, {"work", named(m.work)}};
     to.update(checked_fields().write(m));
     to.update(checked_state_fields().write(state));
     return to;
 }
 
-Json rounds_json(const CellState& state, std::uint32_t first) {
+OrderedJson rounds_json(const CellState& state, std::uint32_t first) {
     const auto& m = state.measurement;
-    Json to{{"samples", from_round(m.samples, first)},
-            {"breakdowns", from_round(m.breakdowns, first)},
-            {"conditions", from_round(m.conditions, first)}};
+    OrderedJson to{{"samples", from_round(m.samples, first)},
+                   {"breakdowns", from_round(m.breakdowns, first)},
+                   {"conditions", from_round(m.conditions, first)}};
     to.update(round_fields().write(m));
     to.update(round_state_fields().write(state));
     return to;
 }
 
-void take_checked(CellState& state, const Json& from, const Cell& cell) {
+void take_checked(CellState& state, const OrderedJson& from, const Cell& cell) {
     auto& m = state.measurement;
     m.settings = resolve(cell.algorithm->parameters(), preset(*cell.algorithm, cell.preset).values,
                          from.at("settings").get<SettingTexts>(), cell.algorithm->name());
@@ -131,7 +131,7 @@ void take_checked(CellState& state, const Json& from, const Cell& cell) {
     checked_state_fields().take(state, from);
 }
 
-void take_rounds(CellState& state, const Json& from) {
+void take_rounds(CellState& state, const OrderedJson& from) {
     auto& m = state.measurement;
     append(m.samples, from.at("samples"));
     append(m.breakdowns, from.at("breakdowns"));

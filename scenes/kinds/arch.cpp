@@ -5,7 +5,7 @@ namespace tandem {
 
 namespace {
 
-Scene make(std::span<const SceneParameter> parameters) {
+Scene make_arch(std::span<const SceneParameter> parameters) {
     Assembly assembly(parameters);
     assembly.dynamics = masonry::dynamics();
     const double radius = real_parameter(parameters, "radius", 0.01, 50);
@@ -33,7 +33,7 @@ SceneKind arch_kind() {
              {"segments", "5", "boxes of a pillar"},
              {"keystone", "1", "0 leaves out the keystone"},
              refine_parameter()},
-            make};
+            make_arch};
 }
 
 } // namespace tandem

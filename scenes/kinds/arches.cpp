@@ -6,13 +6,14 @@
 #include "base/random.h"
 #include "scenes/shapes.h"
 
+#include <numbers>
 #include <algorithm>
 
 namespace tandem {
 
 namespace {
 
-constexpr double pi = 0x1.921fb54442d18p1;
+using std::numbers::pi;
 
 /// Stone `number` of the arch, counted from +x; the origin is the centre of the arch.
 Mesh wedge(const ArchShape& shape, std::uint64_t number) {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double degree = 0x1.1df46a2529d39p-6; ///< pi / 180
 
-Scene make(std::span<const SceneParameter> parameters) {
+Scene make_block(std::span<const SceneParameter> parameters) {
     Assembly assembly(parameters);
     auto& dynamics = assembly.dynamics;
     const auto bodies = integer_parameter(parameters, "bodies", 1, 100000);
@@ -53,7 +53,7 @@ SceneKind block_kind() {
              {"restitution", "0", "Newton's coefficient"},
              {"slope", "0", "degrees downhill along x"},
              refine_parameter()},
-            make};
+            make_block};
 }
 
 } // namespace tandem

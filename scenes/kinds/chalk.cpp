@@ -9,9 +9,9 @@ namespace tandem {
 
 namespace {
 
-constexpr std::size_t shapes = 6; ///< grain1 to grain6
-constexpr double pitch = 1.1;     ///< m; a grain is less than 1 m across in every direction
-constexpr double wall = 0.5;      ///< thickness, m
+constexpr std::size_t shapes = 6;   ///< grain1 to grain6
+constexpr double grain_pitch = 1.1; ///< m; a grain is less than 1 m across in every direction
+constexpr double wall = 0.5;        ///< thickness, m
 enum : std::uint32_t { grain, steel };
 
 /// Sets the paper's configuration, with small steps and correction of positions.
@@ -50,22 +50,22 @@ void add_box_of_walls(Assembly& assembly, double width, double height) {
     }
 }
 
-Scene make(std::span<const SceneParameter> parameters) {
+Scene make_chalk(std::span<const SceneParameter> parameters) {
     Assembly assembly(parameters);
     set_solver(assembly.dynamics);
     const auto bodies = integer_parameter(parameters, "bodies", 1, 100000);
     Random random(integer_parameter(parameters, "seed", 0, ~std::uint64_t{0}));
     std::size_t side = 1;
     while (side * side * side < bodies) ++side;
-    const double width = pitch * static_cast<double>(side);
+    const double width = grain_pitch * static_cast<double>(side);
     const std::size_t layers = (bodies + side * side - 1) / (side * side);
-    const double filled = pitch * static_cast<double>(layers);
+    const double filled = grain_pitch * static_cast<double>(layers);
     add_box_of_walls(assembly, width, filled + 3 * wall);
     std::vector<std::uint32_t> grains;
     for (std::size_t i = 1; i <= shapes; ++i)
         grains.push_back(assembly.add_mesh(built_in_mesh(fmt::format("grain{}", i))));
     assembly.check_memory(bodies, grains.front());
-    const auto position = [&](std::size_t n) { return pitch * (static_cast<double>(n) + 0.5); };
+    const auto position = [&](std::size_t n) { return grain_pitch * (static_cast<double>(n) + 0.5); };
     for (std::size_t i = 0; i < bodies; ++i) {
         const std::size_t layer = i / (side * side);
         const Eigen::Vector3d centre(position(i % side) - 0.5 * width, position(layer),
@@ -87,7 +87,7 @@ SceneKind chalk_kind() {
         {{"bodies", "15", "grains, without the five walls and the lid"},
          {"seed", "1", "seed of the orientations"},
          refine_parameter()},
-        make};
+        make_chalk};
 }
 
 } // namespace tandem

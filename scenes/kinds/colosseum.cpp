@@ -5,7 +5,7 @@ namespace tandem {
 
 namespace {
 
-Scene make(std::span<const SceneParameter> parameters) {
+Scene make_colosseum(std::span<const SceneParameter> parameters) {
     Assembly assembly(parameters);
     assembly.dynamics = masonry::dynamics();
     const Amphitheatre shape{.inner = real_parameter(parameters, "radius", 0.1, 1e3),
@@ -31,7 +31,7 @@ SceneKind colosseum_kind() {
          {"width", "1", "outer minus inner radius, m"},
          {"keystone", "1", "0 leaves out the keystone of one arch, the first of the lowest layer"},
          refine_parameter()},
-        make};
+        make_colosseum};
 }
 
 } // namespace tandem

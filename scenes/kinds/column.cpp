@@ -3,6 +3,7 @@
 #include "scenes/parameters.h"
 #include "base/random.h"
 
+#include <numbers>
 #include <algorithm>
 #include <utility>
 
@@ -10,11 +11,11 @@ namespace tandem {
 
 namespace {
 
-constexpr double pi = 0x1.921fb54442d18p1;
+using std::numbers::pi;
 constexpr std::uint64_t fold_cubes = 24; ///< along the column from one fold to the next on the same side
 constexpr std::uint64_t thick_cubes = 2;
 constexpr double fold_length = bar_edge * fold_cubes;
-constexpr double overlap = 0.125; ///< of neighbouring columns in the tightest frame, m
+constexpr double column_overlap = 0.125; ///< of neighbouring columns in the tightest frame, m
 
 /// Range of the line's y.
 std::pair<double, double> sides(const std::vector<Section>& line) {
@@ -43,12 +44,12 @@ std::vector<Section> upright(std::vector<Section> line) {
     return line;
 }
 
-Scene make(std::span<const SceneParameter> parameters) {
+Scene make_column(std::span<const SceneParameter> parameters) {
     const auto folds = integer_parameter(parameters, "folds", 1, 10000);
     const auto width = integer_parameter(parameters, "width", 1, 1000);
     const double slope = real_parameter(parameters, "slope", 1, 2.2);
     const auto [left, right] = sides(zigzag(fold_cubes + 1, bar_edge, bar_drift, slope));
-    const double pitch = right - left + bar_edge * thick_cubes - overlap;
+    const double pitch = right - left + bar_edge * thick_cubes - column_overlap;
     // Neighbours have opposite slopes and drifts, so that their folds meet.
     const Bars bars{
         .count = integer_parameter(parameters, "count", 1, 100000),
@@ -76,7 +77,7 @@ SceneKind column_kind() {
          {"slope", "2", "angle of the line against the axis in the tightest frame, radians, 1..2.2"},
          {"frames", "200", "steps of 0.01 s"},
          refine_parameter()},
-        make};
+        make_column};
 }
 
 } // namespace tandem

@@ -7,8 +7,8 @@ namespace tandem {
 
 namespace {
 
-constexpr double jack_size = 0.9; ///< m
-constexpr double spacing = 0.1;   ///< gap between boxes of jacks, m
+constexpr double jack_size = 0.9;    ///< m
+constexpr double jack_spacing = 0.1; ///< gap between boxes of jacks, m
 
 /// Lengths in units of the funnel's diameter.
 struct Layout {
@@ -17,7 +17,7 @@ struct Layout {
     double ground; ///< width of the ground
 };
 
-Scene make(std::span<const SceneParameter> parameters, const Layout& layout) {
+Scene make_funnel(std::span<const SceneParameter> parameters, const Layout& layout) {
     Assembly assembly(parameters);
     assembly.dynamics = masonry::dynamics();
     const auto bodies = integer_parameter(parameters, "bodies", 1, 1000000);
@@ -27,7 +27,7 @@ Scene make(std::span<const SceneParameter> parameters, const Layout& layout) {
     assembly.add_ground(layout.ground * size, masonry::ground);
     assembly.add(funnel, {.pose = {.translation = {0, layout.centre * size, 0}}, .fixed = true});
     assembly.check_memory(bodies, jack);
-    for (const auto& centre : block(bodies, jack_size + spacing, layout.bottom * size))
+    for (const auto& centre : block(bodies, jack_size + jack_spacing, layout.bottom * size))
         assembly.add(jack, {.pose = {.translation = centre}});
     return assembly.finish();
 }
@@ -43,19 +43,20 @@ SceneKind funnel_kind() {
              {"size", "16", "diameter of the funnel, m; a jack has 0.9"},
              refine_parameter()},
             [](auto parameters) {
-                return make(parameters, {.centre = 15.0 / 16, .bottom = 21.0 / 16, .ground = 2});
+                return make_funnel(parameters, {.centre = 15.0 / 16, .bottom = 21.0 / 16, .ground = 2});
             }};
 }
 
 SceneKind jacks_kind() {
-    return {"jacks",
-            "the paper's Fig. 1, and with bodies=1000 Fig. 2: jacks jam in a wider, lower funnel; its size "
-            "is that "
-            "of the interactive variant, which the figures are likely to show; jacks are rigid",
-            {{"bodies", "2000", "jacks, without the ground and the funnel"},
-             {"size", "20", "diameter of the funnel, m; a jack has 0.9"},
-             refine_parameter()},
-            [](auto parameters) { return make(parameters, {.centre = 0.5, .bottom = 1, .ground = 1.5}); }};
+    return {
+        "jacks",
+        "the paper's Fig. 1, and with bodies=1000 Fig. 2: jacks jam in a wider, lower funnel; its size "
+        "is that "
+        "of the interactive variant, which the figures are likely to show; jacks are rigid",
+        {{"bodies", "2000", "jacks, without the ground and the funnel"},
+         {"size", "20", "diameter of the funnel, m; a jack has 0.9"},
+         refine_parameter()},
+        [](auto parameters) { return make_funnel(parameters, {.centre = 0.5, .bottom = 1, .ground = 1.5}); }};
 }
 
 } // namespace tandem

@@ -7,10 +7,10 @@ namespace tandem {
 
 namespace {
 
-constexpr double small = 0.75;  ///< height of a falling glass, m
-constexpr double spacing = 0.1; ///< gap between falling glasses, m
+constexpr double small = 0.75;        ///< height of a falling glass, m
+constexpr double glass_spacing = 0.1; ///< gap between falling glasses, m
 
-Scene make(std::span<const SceneParameter> parameters) {
+Scene make_glasses(std::span<const SceneParameter> parameters) {
     Assembly assembly(parameters);
     assembly.dynamics = masonry::dynamics();
     const auto bodies = integer_parameter(parameters, "bodies", 1, 1000000);
@@ -22,7 +22,7 @@ Scene make(std::span<const SceneParameter> parameters) {
     assembly.add(large, {.pose = {.translation = {0, 0.5 * size, 0}}, .fixed = true});
     assembly.check_memory(bodies, falling);
     // The paper's block begins half a metre lower, which would overlap the rim of this glass.
-    for (const auto& centre : block(bodies, small + spacing, size))
+    for (const auto& centre : block(bodies, small + glass_spacing, size))
         assembly.add(falling, {.pose = {.translation = centre}});
     return assembly.finish();
 }
@@ -37,7 +37,7 @@ SceneKind glasses_kind() {
         {{"bodies", "2000", "falling glasses, without the ground and the large glass"},
          {"size", "16", "height of the large glass, m; a falling one has 0.75"},
          refine_parameter()},
-        make};
+        make_glasses};
 }
 
 } // namespace tandem

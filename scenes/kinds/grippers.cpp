@@ -52,7 +52,7 @@ Frame gripped(const std::vector<Pose>& objects, std::size_t step) {
     return frame;
 }
 
-Scene make(std::span<const SceneParameter> parameters) {
+Scene make_grippers(std::span<const SceneParameter> parameters) {
     Scene scene;
     const auto worlds = integer_parameter(parameters, "worlds", 1, 1000000);
     const auto seed = integer_parameter(parameters, "seed", 0, ~std::uint64_t{0});
@@ -79,7 +79,7 @@ SceneKind grippers_kind() {
              {"seed", "1", "seed of the objects' poses"},
              {"frames", "11", "time steps; the fingers close for 10 and open for 10"},
              refine_parameter()},
-            make};
+            make_grippers};
 }
 
 } // namespace tandem

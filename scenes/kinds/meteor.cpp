@@ -6,7 +6,7 @@ namespace tandem {
 
 namespace {
 
-Scene make(std::span<const SceneParameter> parameters) {
+Scene make_meteor(std::span<const SceneParameter> parameters) {
     Assembly assembly(parameters);
     auto& dynamics = assembly.dynamics;
     dynamics = masonry::dynamics();
@@ -37,7 +37,7 @@ SceneKind meteor_kind() {
              {"ball", "1.5", "radius, m"},
              {"speed", "90", "speed towards the building, m/s; the sideways speed is a sixth of it"},
              refine_parameter()},
-            make};
+            make_meteor};
 }
 
 } // namespace tandem

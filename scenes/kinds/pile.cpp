@@ -67,7 +67,7 @@ Frame moved(const std::vector<Mover>& movers, const Eigen::Vector3d& middle, dou
     return frame;
 }
 
-Scene make(std::span<const SceneParameter> parameters) {
+Scene make_pile(std::span<const SceneParameter> parameters) {
     Scene scene;
     const auto world = integer_parameter(parameters, "bodies", 1, 10000000);
     const auto worlds = integer_parameter(parameters, "worlds", 1, 10000000 / world);
@@ -111,7 +111,7 @@ SceneKind pile_kind() {
              {"frames", "8", "time steps"},
              {"far", "0", "offset added to all coordinates"},
              refine_parameter()},
-            make};
+            make_pile};
 }
 
 } // namespace tandem

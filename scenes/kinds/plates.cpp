@@ -9,9 +9,9 @@ namespace tandem {
 
 namespace {
 
-constexpr double degree = 0x1.1df46a2529d39p-6; ///< pi / 180
-constexpr double half_depth = 2;
-constexpr double pitch = 0.5;       ///< thickness of a plate, so that neighbours touch at rest
+constexpr double one_degree = 0x1.1df46a2529d39p-6; ///< pi / 180
+constexpr double plate_half_depth = 2;
+constexpr double plate_pitch = 0.5; ///< thickness of a plate, so that neighbours touch at rest
 constexpr std::size_t period = 200; ///< steps of 0.01 s between two reversals of the twist
 
 /// Twist of a plate's ends in degrees. It changes by one degree a step, up and down.
@@ -37,15 +37,15 @@ Frame twisted(const std::vector<Eigen::Vector3d>& rest, std::size_t plates, doub
         const auto turn = sine_cosine(angle * static_cast<double>(plate));
         auto& vertices = frame.deformed.emplace_back();
         for (const auto& p : rest) {
-            const auto twist = sine_cosine(twist_at(step) * degree * (p.z() / half_depth));
+            const auto twist = sine_cosine(twist_at(step) * one_degree * (p.z() / plate_half_depth));
             const auto world = about_y(about_z(p, twist), turn);
-            vertices.emplace_back(world.x(), world.y() + pitch * static_cast<double>(plate), world.z());
+            vertices.emplace_back(world.x(), world.y() + plate_pitch * static_cast<double>(plate), world.z());
         }
     }
     return frame;
 }
 
-Scene make(std::span<const SceneParameter> parameters) {
+Scene make_plates(std::span<const SceneParameter> parameters) {
     Scene scene;
     const auto count = integer_parameter(parameters, "count", 1, 100000);
     const double angle = real_parameter(parameters, "angle", -4, 4);
@@ -71,7 +71,7 @@ SceneKind plates_kind() {
              {"angle", "0.3", "rotation of each plate relative to the plate below, radians"},
              {"frames", "500", "steps of 0.01 s"},
              refine_parameter()},
-            make};
+            make_plates};
 }
 
 } // namespace tandem

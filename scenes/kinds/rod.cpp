@@ -3,15 +3,16 @@
 #include "scenes/parameters.h"
 #include "base/random.h"
 
+#include <numbers>
 #include <cmath>
 
 namespace tandem {
 
 namespace {
 
-constexpr double pi = 0x1.921fb54442d18p1;
-constexpr double bend = 2;       ///< radius of the tightest coil, in thicknesses
-constexpr double distance = 4.9; ///< between the axes of rods in thicknesses: the tightest coils overlap
+using std::numbers::pi;
+constexpr double bend = 2;           ///< radius of the tightest coil, in thicknesses
+constexpr double rod_distance = 4.9; ///< between the axes of rods in thicknesses: the tightest coils overlap
 
 /// Form of a coil around the y-axis whose number of turns stays: `turn` radians a metre of the rod. `rise` is
 /// the cosine of the angle between rod and axis: 1 of a straight rod, 0 of a flat ring.
@@ -34,7 +35,7 @@ Section section_at(const Coil& coil, double s) {
             own.cosine * binormal - own.sine * normal};
 }
 
-Scene make(std::span<const SceneParameter> parameters) {
+Scene make_rod(std::span<const SceneParameter> parameters) {
     const auto length = integer_parameter(parameters, "length", 1, 100000);
     const auto width = integer_parameter(parameters, "width", 1, 64);
     const double thickness = bar_edge * static_cast<double>(width);
@@ -52,7 +53,8 @@ Scene make(std::span<const SceneParameter> parameters) {
                         },
                     .offset =
                         [=](std::size_t body) {
-                            return Eigen::Vector3d(distance * thickness * static_cast<double>(body), 0, 0);
+                            return Eigen::Vector3d(rod_distance * thickness * static_cast<double>(body), 0,
+                                                   0);
                         }};
     return scene_of(bars, bar("rod", {length, width, width}), parameters);
 }
@@ -70,7 +72,7 @@ SceneKind rod_kind() {
              {"pitch", "0.8", "distance of turns in the tightest frame, in thicknesses"},
              {"frames", "200", "steps of 0.01 s"},
              refine_parameter()},
-            make};
+            make_rod};
 }
 
 } // namespace tandem

@@ -3,17 +3,18 @@
 #include "scenes/parameters.h"
 #include "base/random.h"
 
+#include <numbers>
 #include <algorithm>
 
 namespace tandem {
 
 namespace {
 
-constexpr double pi = 0x1.921fb54442d18p1;
-constexpr double neck = 1.5 * bar_edge; ///< radius of the arcs on both sides of a loop
-constexpr double neck_angle = pi / 3;   ///< of these arcs; its cosine of 1/2 makes the distance exact
-constexpr double overlap = 0.0625;      ///< of the width, between neighbouring sheets
-constexpr double added_gap = 1;         ///< of layers at the start, in thicknesses
+using std::numbers::pi;
+constexpr double neck = 1.5 * bar_edge;  ///< radius of the arcs on both sides of a loop
+constexpr double neck_angle = pi / 3;    ///< of these arcs; its cosine of 1/2 makes the distance exact
+constexpr double sheet_overlap = 0.0625; ///< of the width, between neighbouring sheets
+constexpr double added_gap = 1;          ///< of layers at the start, in thicknesses
 
 /// A fold in the form of a drop: an arc of radius `neck`, a loop of radius `loop` in the other direction, an
 /// arc. The parts that it connects are then parallel, loop - neck apart, which a single arc cannot do below a
@@ -44,11 +45,11 @@ std::vector<Section> folded(std::size_t sections, double spacing, double gap, do
     });
 }
 
-Scene make(std::span<const SceneParameter> parameters) {
+Scene make_sheet(std::span<const SceneParameter> parameters) {
     const auto length = integer_parameter(parameters, "length", 60, 100000);
     const auto width = integer_parameter(parameters, "width", 1, 5000);
     const double gap = real_parameter(parameters, "gap", 0.5, 1.5);
-    const double pitch = (1 - overlap) * bar_edge * static_cast<double>(width);
+    const double pitch = (1 - sheet_overlap) * bar_edge * static_cast<double>(width);
     const Bars bars{.count = integer_parameter(parameters, "count", 1, 100000),
                     .line = [=](std::size_t sections, double spacing, double amount,
                                 std::size_t) { return folded(sections, spacing, gap, amount); },
@@ -73,7 +74,7 @@ SceneKind sheet_kind() {
          {"gap", "0.9", "distance of layers in the tightest frame, in thicknesses, 0.5..1.5"},
          {"frames", "200", "steps of 0.01 s"},
          refine_parameter()},
-        make};
+        make_sheet};
 }
 
 } // namespace tandem

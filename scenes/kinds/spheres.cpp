@@ -15,7 +15,7 @@ namespace {
 constexpr double modulus = 1e5;        ///< Pa
 constexpr double ball_radius = 3;      ///< m
 constexpr double cells_times_hint = 8; ///< 2, 3, 4 and 8 cells along a diameter for hints 4, 3, 2 and 1
-constexpr double drift_per_frame = 1e-4;
+constexpr double ball_drift = 1e-4;
 const Eigen::Vector3d ellipsoid_radii{3.01, 3.5, 4};
 /// The ball's distance from the ellipsoid along each axis, by overlap.
 constexpr std::array<double, 4> distances = {7, 4, 3.5, 1.2};
@@ -27,7 +27,7 @@ Mesh compliant(const std::string& name, const Eigen::Vector3d& radii, std::uint6
     return mesh;
 }
 
-Scene make(std::span<const SceneParameter> parameters) {
+Scene make_spheres(std::span<const SceneParameter> parameters) {
     Scene scene;
     const double hint = real_parameter(parameters, "hint", 0.05, 4);
     const auto cells = static_cast<std::uint64_t>(std::round(cells_times_hint / hint));
@@ -38,7 +38,7 @@ Scene make(std::span<const SceneParameter> parameters) {
                     compliant("ball", Eigen::Vector3d::Constant(ball_radius), cells, levels)};
     scene.bodies = {Body{.mesh = 0}, Body{.mesh = 1}};
     scene.frame = [distance](std::size_t step) {
-        const double drift = drift_per_frame * distance * static_cast<double>(step);
+        const double drift = ball_drift * distance * static_cast<double>(step);
         Frame frame;
         frame.poses.resize(2);
         frame.poses[1].translation = {distance + drift, distance + 2 * drift, distance + 3 * drift};
@@ -61,7 +61,7 @@ SceneKind spheres_kind() {
               "0: far apart, 1: only the boxes overlap, 2: a small contact surface, 3: a large one"},
              {"frames", "8", "time steps"},
              refine_parameter()},
-            make};
+            make_spheres};
 }
 
 } // namespace tandem

@@ -8,7 +8,7 @@ namespace tandem {
 
 namespace {
 
-constexpr std::size_t sides = 12;      ///< sides of a drum
+constexpr std::size_t drum_sides = 12; ///< sides of a drum
 constexpr std::size_t shaft = 5;       ///< drums of a shaft
 constexpr double pitch_of_width = 2.5; ///< distance of adjacent pillars, in widths of a pillar
 
@@ -47,7 +47,7 @@ Pillar make_pillar(Assembly& assembly, const Plan& plan) {
     const auto part_height = [&](double fraction) { return halved_on_grid(fraction * plan.height); };
     const double half = 0.5 * plan.width;
     const auto add_drum = [&](double lower, double upper, double height) {
-        pillar.add(assembly.add_mesh(drum(sides, lower * half, upper * half, height)), height);
+        pillar.add(assembly.add_mesh(drum(drum_sides, lower * half, upper * half, height)), height);
     };
     pillar.add(assembly.add_box({plan.width, part_height(0.06), plan.width}), part_height(0.06));
     add_drum(0.9, 0.9, part_height(0.06));
@@ -107,7 +107,7 @@ void add_ceiling(Assembly& assembly, const Plan& plan, double base) {
                  halved_on_grid(0.5 * plan.course()));
 }
 
-Scene make(std::span<const SceneParameter> parameters) {
+Scene make_temple(std::span<const SceneParameter> parameters) {
     Assembly assembly(parameters);
     assembly.dynamics = masonry::dynamics();
     const Plan plan{.columns = integer_parameter(parameters, "columns", 2, 1000),
@@ -141,7 +141,7 @@ SceneKind temple_kind() {
              {"height", "3", "height of a pillar, m"},
              {"width", "0.5", "width of a pillar, m; the distance of pillars is 2.5 widths"},
              refine_parameter()},
-            make};
+            make_temple};
 }
 
 } // namespace tandem

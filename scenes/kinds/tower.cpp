@@ -5,11 +5,13 @@
 #include "base/random.h"
 #include "scenes/shapes.h"
 
+#include <numbers>
+
 namespace tandem {
 
 namespace {
 
-constexpr double pi = 0x1.921fb54442d18p1;
+using std::numbers::pi;
 constexpr double beam_width = 1.9, beam_depth = 4; ///< sizes of the mesh, whose height is 1
 
 std::vector<std::uint32_t> end_vertices(const Mesh& mesh) {
@@ -28,7 +30,7 @@ StepSettings stepping(bool couple) {
     return result;
 }
 
-Scene make(std::span<const SceneParameter> parameters) {
+Scene make_tower(std::span<const SceneParameter> parameters) {
     Assembly assembly(parameters);
     auto& dynamics = assembly.dynamics;
     const auto segments = integer_parameter(parameters, "segments", 1, 10000);
@@ -72,7 +74,7 @@ SceneKind tower_kind() {
          {"radius", "2", "radius of the free middle, m; beams are 4 m long"},
          {"couple", "0", "1: contacts exert forces"},
          refine_parameter()},
-        make};
+        make_tower};
 }
 
 } // namespace tandem

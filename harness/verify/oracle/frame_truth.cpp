@@ -16,9 +16,9 @@ namespace {
 using namespace oracle;
 
 /// The input of the decision.
-class Bodies {
+class PosedBodies {
 public:
-    Bodies(const Scene& scene, const Frame& frame, Positions positions)
+    PosedBodies(const Scene& scene, const Frame& frame, Positions positions)
         : scene_(scene),
           frame_(frame),
           world_(world_of(scene, frame, positions.precision, positions.origin)),
@@ -64,7 +64,7 @@ private:
     bool posed_;
 };
 
-std::vector<Decision> decide_all(const Bodies& bodies, std::span<const Pair> pairs) {
+std::vector<Decision> decide_all(const PosedBodies& bodies, std::span<const Pair> pairs) {
     std::vector<Decision> result(pairs.size());
     constexpr std::size_t part = 1024;
     parallel_for((pairs.size() + part - 1) / part, [&](std::size_t index) {
@@ -75,7 +75,7 @@ std::vector<Decision> decide_all(const Bodies& bodies, std::span<const Pair> pai
 }
 
 /// Decides pairs and stores those that intersect.
-void add_intersecting(const Bodies& bodies, std::span<const Pair> pairs, FrameTruth& truth) {
+void add_intersecting(const PosedBodies& bodies, std::span<const Pair> pairs, FrameTruth& truth) {
     const auto decisions = decide_all(bodies, pairs);
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         truth.decisions.add(decisions[i]);
@@ -112,7 +112,7 @@ FrameTruth frame_truth(const Scene& scene, const Frame& frame, Positions positio
     const auto fixed_bytes = tetrahedron_count(scene) * (sizeof(TetraCorners) + sizeof(Box));
     check_memory(scene, fixed_bytes, memory);
     FrameTruth truth;
-    const Bodies world(scene, frame, positions);
+    const PosedBodies world(scene, frame, positions);
     std::vector<Boxes> boxes(world.count());
     parallel_for(boxes.size(), [&](std::size_t body) { boxes[body] = world.boxes(body); });
     truth.invalid = invalid_of(boxes);
@@ -125,7 +125,7 @@ FrameTruth frame_truth(const Scene& scene, const Frame& frame, Positions positio
 
 std::vector<Decision> decide_pairs(const Scene& scene, const Frame& frame, Positions positions,
                                    std::span<const Pair> pairs) {
-    return decide_all(Bodies(scene, frame, positions), pairs);
+    return decide_all(PosedBodies(scene, frame, positions), pairs);
 }
 
 std::vector<std::array<TetraCorners, 2>> pair_corners(const Scene& scene, const Frame& frame,
