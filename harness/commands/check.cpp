@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // tandem check: compares every algorithm on every device with the reference, and counts the pairs of the
 // exact truth that it misses.
+#include "base/counted.h"
 #include "harness/commands/check.h"
 #include "harness/measuring/measure.h"
 #include "harness/program/interrupt.h"
@@ -181,7 +182,7 @@ std::vector<Cell> plan_check(Request request, std::span<const DeviceGroup> devic
     });
     if (cells.empty() && left_out > 0) throw InputError(reasons.front());
     if (left_out > 0)
-        print_message("tandem: {} of {} cells left out: {}\n", left_out, left_out + cells.size(),
+        print_message("tandem: {} of {} left out: {}\n", left_out, counted(left_out + cells.size(), "cell"),
                       fmt::join(reasons, "; "));
     return with_small_queues(std::move(cells), request);
 }
@@ -218,8 +219,8 @@ int check_command(const RunOptions& options) {
     });
     if (file.failed() || Interrupt::asked()) return code;
     put("{}\n", code == 0 ? "all agree with the reference" : "NOT all agree with the reference");
-    for (const auto& [text, cells] : roundings) put("{} cell{}: {}\n", cells, cells == 1 ? "" : "s", text);
-    if (broken > 0) put("{} cells with safe rounding MISS pairs that touch or overlap\n", broken);
+    for (const auto& [text, cells] : roundings) put("{}: {}\n", counted(cells, "cell"), text);
+    if (broken > 0) put("{} with safe rounding MISS pairs that touch or overlap\n", counted(broken, "cell"));
     return code;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/commands/list_cells.h"
 
+#include "base/counted.h"
 #include "base/standard_streams.h"
 #include "harness/commands/run_records.h"
 #include "harness/plans/cell_session.h"
@@ -39,15 +40,13 @@ void list(const Task& task, const RunRecords& records, Listed& all) {
     }
 }
 
-std::string count_text(std::size_t cells) { return fmt::format("{} cell{}", cells, cells == 1 ? "" : "s"); }
-
 /// "8 cells, about 56 s of rounds and 2 cells of unknown duration".
 std::string total_text(const Listed& all) {
     if (all.unknown == all.cells)
-        return count_text(all.cells) + (all.cells > 0 ? " of unknown duration" : "");
-    return fmt::format("{}, about {:.0f} s of rounds{}", count_text(all.cells), all.seconds,
-                       all.unknown > 0 ? fmt::format(" and {} of unknown duration", count_text(all.unknown))
-                                       : "");
+        return counted(all.cells, "cell") + (all.cells > 0 ? " of unknown duration" : "");
+    return fmt::format(
+        "{}, about {:.0f} s of rounds{}", counted(all.cells, "cell"), all.seconds,
+        all.unknown > 0 ? fmt::format(" and {} of unknown duration", counted(all.unknown, "cell")) : "");
 }
 
 } // namespace
@@ -64,7 +63,8 @@ int list_cells(const RunGroups& all, const RunOptions& options, RankTeam* team) 
             list(*task, *records, listed);
         } catch (const InputError& error) {
             if (all.groups().size() == 1) throw;
-            print_message("tandem: {} cells cannot be listed: {}\n", group.cells.size(), error.what());
+            print_message("tandem: {} cannot be listed: {}\n", counted(group.cells.size(), "cell"),
+                          error.what());
             ++unopened;
         }
     const auto left_out = records ? records->left_out() : 0;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "base/counted.h"
 #include "harness/profile/ceilings.h"
 #include "harness/commands/listings.h"
 #include "harness/sampling/conditions.h"
@@ -95,8 +96,8 @@ void print_drivers(const std::vector<DriverReport>& drivers) {
         if (!driver.problem.empty()) continue;
         std::vector<std::string> platforms;
         for (const auto& platform : driver.platforms)
-            platforms.push_back(fmt::format("platform '{}' with {} device{}", platform.name, platform.devices,
-                                            platform.devices == 1 ? "" : "s"));
+            platforms.push_back(
+                fmt::format("platform '{}' with {}", platform.name, counted(platform.devices, "device")));
         put("{:<10} {} ({}): {}\n", "driver", driver.file.empty() ? "no file" : driver.file, driver.library,
             fmt::join(platforms, ", "));
     }
@@ -122,9 +123,10 @@ int measure_devices(const DevicesOptions& options) {
 
 void print_scene(const SceneKind& kind, const Scene& scene) {
     put("{}: {}\n", kind.name, kind.models);
-    put("  {}\n", scene.dynamics ? fmt::format("simulated: {} steps of {} s; its only frame is the start",
-                                               scene.dynamics->steps, scene.dynamics->stepping.step)
-                                 : fmt::format("scripted: {} frames", scene.frame_count));
+    put("  {}\n", scene.dynamics
+                      ? fmt::format("simulated: {} of {} s; its only frame is the start",
+                                    counted(scene.dynamics->steps, "step"), scene.dynamics->stepping.step)
+                      : fmt::format("scripted: {}", counted(scene.frame_count, "frame")));
     for (const auto& p : kind.parameters) put("    {:<12} {:<12} {}\n", p.name, p.value, p.help);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/commands/run.h"
 
+#include "base/counted.h"
 #include "base/progress.h"
 #include "base/standard_streams.h"
 #include "harness/choosing/choose.h"
@@ -173,16 +174,16 @@ int Run::end(int code) {
     const auto& file = records_->file();
     const bool lacks_dump = measured_ == 0 && options_.has_dumps();
     if (records_->left_out() > 0)
-        put("{} cells are already in {}{}\n", records_->left_out(), options_.out,
+        put("{} already in {}{}\n", counted_are(records_->left_out(), "cell"), options_.out,
             lacks_dump ? "; no dump is written: run again without --resume" : "");
     if (!options_.out.empty()) {
         const auto count = file.appended() - verdicts_;
-        put("{} record{} appended to {}\n", count, count == 1 ? "" : "s", options_.out);
+        put("{} appended to {}\n", counted(count, "record"), options_.out);
     }
     if (!interrupted_ && !file.failed()) records_->unfinished().remove();
     if (!interrupted_ || file.failed()) return code;
     const bool can_resume = !options_.out.empty() && !dump_ended_;
-    print_message("tandem: interrupted; {} cells are measured{}{}\n", measured_,
+    print_message("tandem: interrupted; {} measured{}{}\n", counted_are(measured_, "cell"),
                   dump_ended_ ? "; the dump is not written: run again without --resume" : "",
                   can_resume
                       ? fmt::format("; to continue: {}{}", command_line(), options_.resume ? "" : " --resume")

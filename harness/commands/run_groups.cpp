@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/commands/run_groups.h"
 
+#include "base/counted.h"
 #include "base/standard_streams.h"
 #include "harness/plans/inputs.h"
 #include "harness/plans/key.h"
@@ -15,10 +16,10 @@ namespace {
 
 void print_left_out(const CellGroups& all) {
     if (all.repeated > 0)
-        print_message("tandem: {} cells are named more than once; each is measured once\n", all.repeated);
+        print_message("tandem: {} named more than once; each is measured once\n",
+                      counted_are(all.repeated, "cell"));
     for (const auto& [reason, count] : all.impossible)
-        print_message("tandem: skipped {} impossible combination{}: {}\n", count, count == 1 ? "" : "s",
-                      reason);
+        print_message("tandem: skipped {}: {}\n", counted(count, "impossible combination"), reason);
 }
 
 /// The keys of the cells of a task, in order.
@@ -46,6 +47,10 @@ RunGroups::RunGroups(const RunOptions& options, RankTeam* team) : options_(optio
         keep_matching(all_, options_.filter, options_.shard);
         if (all_.groups.empty() && !all_.impossible.empty() && options_.shard.of <= 1)
             throw InputError(fmt::format("no cell is possible: {}", all_.impossible.begin()->first));
+        if (all_.groups.empty() && all_.excluded > 0 && options_.shard.of <= 1)
+            throw InputError(fmt::format("'exclude' of the plan leaves out {}; none is left",
+                                         all_.excluded == 1 ? "its only cell"
+                                                            : fmt::format("all {} cells", all_.excluded)));
         print_left_out(all_);
         if (options_.shard.of > 1)
             put("shard {}/{}: {} of {} groups\n", options_.shard.index, options_.shard.of, all_.groups.size(),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/measuring/measure.h"
 
+#include "base/counted.h"
 #include "base/standard_streams.h"
 #include "base/statistics.h"
 #include "harness/plans/key.h"
@@ -54,7 +55,7 @@ CellResult end_cell(const Outcome& outcome, const Sampling& sampling, const Task
     result.cell = &outcome.sampler->cell();
     result.measurement = outcome.sampler->measurement();
     result.measured = outcome.failure.empty();
-    result.converged = outcome.converged;
+    result.is_wide = !outcome.converged && !sampling.criterion.repeat;
     const bool recorded =
         !is_first(result.cell->team)
         || sink.end(result,
@@ -136,7 +137,7 @@ std::string doubts(std::span<const CellResult* const> results) {
     std::size_t wide = 0, outliers = 0;
     std::pair<double, const Cell*> most; // drift
     for (const auto* result : results) {
-        wide += result->converged ? 0 : 1;
+        wide += result->is_wide ? 1 : 0;
         const auto rounds = round_medians(result->measurement.totals(), result->measurement.rounds());
         outliers += count_outliers(rounds);
         if (const auto change = drift(rounds); change && std::abs(*change) > std::abs(most.first))
@@ -147,7 +148,7 @@ std::string doubts(std::span<const CellResult* const> results) {
         notes.push_back(results.size() == 1 ? "the interval is wider than asked for"
                                             : fmt::format("{} of {} intervals are wider than asked for", wide,
                                                           results.size()));
-    if (outliers > 0) notes.push_back(fmt::format("{} outlier{}", outliers, outliers == 1 ? "" : "s"));
+    if (outliers > 0) notes.push_back(counted(outliers, "outlier"));
     if (most.second != nullptr)
         notes.push_back(
             fmt::format("drift of up to {:+.1f} % ({})", most.first * 100, describe(*most.second)));

@@ -24,8 +24,8 @@ struct CellResult {
     const Cell* cell = nullptr;
     Measurement measurement;
     int code = 0; ///< 0: right; 1: the answer is wrong; 3: the device failed or the record was not written
-    bool measured = false;  ///< the device did not fail; the record may still be missing
-    bool converged = false; ///< precise enough, or sampled as often as requested
+    bool measured = false; ///< the device did not fail; the record may still be missing
+    bool is_wide = false;  ///< its interval is wider than asked for
 };
 
 /// How a measurement reports: `progress` shows what runs, `ended` takes each cell's result as it ends.

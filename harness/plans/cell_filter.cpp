@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/plans/cell_filter.h"
 
+#include "base/counted.h"
 #include "base/error.h"
 
 #include <array>
@@ -39,8 +40,8 @@ void CellFilter::apply(std::vector<Cell>& cells) const {
 }
 
 void CellFilter::refuse_none(std::size_t count, const Cell& example) const {
-    throw InputError(fmt::format("--filter '{}': matches none of {} cells; one of them is '{}'", text_, count,
-                                 describe(example)));
+    throw InputError(fmt::format("--filter '{}': matches none of {}; one of them is '{}'", text_,
+                                 counted(count, "cell"), describe(example)));
 }
 
 void keep_matching(std::vector<Cell>& cells, const std::string& expression) {

@@ -83,6 +83,10 @@ Product read_product(const Json& json, const JsonLocation& location, const Produ
         product.scenes = scene_texts(scalars(json["scenes"], location / "scenes"),
                                      std::filesystem::path(location.file).parent_path());
     read("frames", product.frames);
+    for (auto& frames : product.frames) // "5:5" is frame 5
+        if (const auto colon = frames.find(':');
+            colon != std::string::npos && frames.substr(0, colon) == frames.substr(colon + 1))
+            frames.resize(colon);
     read("algorithms", product.request.algorithms);
     read("presets", product.request.presets);
     read("devices", product.request.devices);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "base/counted.h"
 #include "harness/program/cache_folder.h"
 #include "harness/plans/task.h"
 
@@ -82,9 +83,10 @@ std::filesystem::path checks_folder(const RunOptions& options) {
 }
 
 std::string scene_text(const Scene& scene, const FrameRange& range) {
-    auto text = fmt::format("scene {}: {} bodies, {} vertices, {} tetrahedra, frames {}:{}, digest {:016x}\n",
-                            visible(scene.key), scene.bodies.size(), vertex_count(scene),
-                            tetrahedron_count(scene), range.first(), range.last(), scene.digest);
+    auto text =
+        fmt::format("scene {}: {}, {} vertices, {} tetrahedra, frames {}:{}, digest {:016x}\n",
+                    visible(scene.key), counted(scene.bodies.size(), "body", "bodies"), vertex_count(scene),
+                    tetrahedron_count(scene), range.first(), range.last(), scene.digest);
     std::size_t inverted = 0;
     for (const auto& mesh : scene.meshes) inverted += mesh.inverted;
     if (inverted > 0)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `tandem profile`.
+#include "base/counted.h"
 #include "harness/plans/cell_session.h"
 #include "harness/record/record.h"
 #include "harness/record/journal.h"
@@ -190,7 +191,7 @@ int Profiling::go() {
     if (traced_ != nullptr && *trace_ && !file_->failed() && !interrupted)
         trace_->write(trace_frame(*traced_, *task_));
     if (traced_ != nullptr) put_text("\n" + profile::profile_legend());
-    if (!run_.out.empty()) put("{} records appended to {}\n", file_->appended(), run_.out);
+    if (!run_.out.empty()) put("{} appended to {}\n", counted(file_->appended(), "record"), run_.out);
     return interrupted && !file_->failed() ? Interrupt::exit_code() : code_;
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "base/counted.h"
 #include "harness/record/record.h"
 #include "harness/simulate/simulate.h"
 #include "harness/simulate/session.h"
@@ -146,7 +147,7 @@ std::string run_table(const RunTotals& t, bool timed) {
         {"solver", t.solve_ns},
         {"motion", t.move_ns},
         {"other", other}};
-    auto text = fmt::format("{} steps in {:.3f} s, after {:.3f} s of warm-up\n", t.steps,
+    auto text = fmt::format("{} in {:.3f} s, after {:.3f} s of warm-up\n", counted(t.steps, "step"),
                             static_cast<double>(t.wall_ns) * 1e-9, static_cast<double>(t.warm_up_ns) * 1e-9);
     for (const auto& [name, ns] : std::span(rows).subspan(timed ? 0 : 1))
         text += fmt::format("  {:<36} {:>10.3f} s {:>6.2f} %\n", name, static_cast<double>(ns) * 1e-9,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/simulate/simulate.h"
 
+#include "base/counted.h"
 #include "harness/simulate/command.h"
 #include "harness/plans/inputs.h"
 #include "harness/program/environment.h"
@@ -77,8 +78,8 @@ Cell only_cell(Request request, const std::vector<BackendReport>& backends) {
     const auto cells = plan(request, devices);
     if (cells.size() != 1)
         throw InputError(fmt::format("a simulation needs one algorithm, preset, device and value of each "
-                                     "setting; this asks for {} cells",
-                                     cells.size()));
+                                     "setting; this asks for {}",
+                                     counted(cells.size(), "cell")));
     if (!makes_contacts(cells.front().settings))
         throw InputError("a simulation needs contacts; leave out output and contact_rule");
     return cells.front();
@@ -168,8 +169,9 @@ void run_and_record(const SimulateOptions& options, std::size_t last, const Cell
     put_text(run_table(totals, !options.record.empty()));
     warn_not_converged(totals);
     if (!options.recording.empty())
-        put("{}: {} frames; measure them with 'tandem run {}'{}\n", options.recording, session.frames(),
-            options.recording, options.reading == MeshReading() ? "" : " and the same options of meshes");
+        put("{}: {}; measure them with 'tandem run {}'{}\n", options.recording,
+            counted(session.frames(), "frame"), options.recording,
+            options.reading == MeshReading() ? "" : " and the same options of meshes");
     const bool interrupted = simulation.steps_done() < last;
     file.append(run_record(cell, scene, totals, interrupted ? "interrupted by a signal" : ""));
 }
@@ -244,14 +246,17 @@ int simulate_command(const SimulateOptions& options) {
     SimulationSession session(options, scene, cell);
     session.restore(simulation);
     const auto last = options.steps > 0 ? options.steps : scene.dynamics->steps;
-    put("scene {}: {} bodies, {} vertices, {} tetrahedra; {}\n", scene.key, scene.bodies.size(),
-        vertex_count(scene), tetrahedron_count(scene), describe(cell));
+    put("scene {}: {}, {} vertices, {} tetrahedra; {}\n", scene.key,
+        counted(scene.bodies.size(), "body", "bodies"), vertex_count(scene), tetrahedron_count(scene),
+        describe(cell));
     if (simulation.steps_done() > 0)
         put("continues after step {}{}\n", simulation.steps_done(),
             simulation.steps_done() >= last ? ": all steps are done, none is simulated" : "");
-    RunTotals totals;
-    totals.session = session.number();
-    run_and_record(options, last, cell, scene, simulation, {session, file, totals});
+    if (simulation.steps_done() < last) {
+        RunTotals totals;
+        totals.session = session.number();
+        run_and_record(options, last, cell, scene, simulation, {session, file, totals});
+    }
     if (simulation.steps_done() < last) return end_interrupted(options, simulation.steps_done(), last);
     interrupt.reset(); // nothing that is drawn needs to be kept
     if (pictures) pictures->draw(options.recording, options.reading);

@@ -98,7 +98,7 @@ class Journal(Case):
             "simulate", "block", "--steps", 2, "--device", "host", "--record", "/dev/full"
         )
         self.assertEqual((status, len(errors)), (3, 1), (text, errors))
-        self.assertIn("1 steps in", text)
+        self.assertIn("1 step in", text)
         status, text, errors = run("run", *self.cell("--repeat", 1, "--dump-pairs", "/dev/full"))
         self.assertEqual(
             (status, errors), (3, ["tandem: /dev/full: writing failed (No space left on device)"]), text
@@ -311,3 +311,7 @@ class Journal(Case):
         self.assertEqual([s["step"] for s in lines[earlier:]], list(range(done + 5)))
         self.assertEqual(len({s["session"] for s in lines[earlier:]}), 1)
         self.assertNotEqual(lines[0]["session"], lines[-1]["session"])
+        before = record.read_bytes()
+        status, text, errors = run(*arguments, "--resume", "--steps", done + 5)
+        self.assertEqual((status, errors, record.read_bytes()), (0, [], before), text)
+        self.assertTrue(text.endswith("all steps are done, none is simulated\n"), text)

@@ -81,6 +81,9 @@ class Plans(PlanCase):
         repeated = self.listed(self.plan(include=[{"scenes": SMALL, "settings": {"k": 18}}]))
         self.assertEqual(len(repeated), 8)
         self.assertIn("2 cells are named more than once", self.errors[0])
+        self.assertEqual(len(self.listed(self.plan(scenes=SMALL, frames=["0", "0:0"]))), 4)
+        everything = self.plan(exclude=[{"algorithms": ["tiled", "chunked"]}])
+        self.bad("leaves out all 8 cells; none is left", "run", everything, "--dry-run")
 
     def test_the_command_line_takes_precedence(self):
         path = self.plan(exclude=[{"settings": {"k": 8}}])
