@@ -140,10 +140,15 @@ void replace_whole(const std::string& path, std::string_view bytes) {
     check_output(path);
     const auto partial = path + ".partial";
     RecordingFile file = make_partial(partial);
-    file.write(0, bytes);
-    file.sync();
-    if (std::rename(partial.c_str(), path.c_str()) != 0)
-        throw OutputError(fmt::format("{}: cannot be replaced ({})", path, std::strerror(errno)));
+    try {
+        file.write(0, bytes);
+        file.sync();
+        if (std::rename(partial.c_str(), path.c_str()) != 0)
+            throw OutputError(fmt::format("{}: cannot be replaced ({})", path, std::strerror(errno)));
+    } catch (const OutputError&) {
+        std::remove(partial.c_str()); // a full disk needs the room
+        throw;
+    }
     sync_folder_of(path);
 }
 

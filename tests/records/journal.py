@@ -122,6 +122,16 @@ class Journal(Case):
         self.assertIn(f"1 record appended to {out}", text)
         self.assertEqual([r["settings"]["k"] for r in self.whole(out)], ["6"])
 
+    def test_a_checkpoint_at_its_limit(self):
+        frames = self.work / "full.frames"
+        status, text, errors = run(
+            f"simulate block:bodies=4 --steps 2 --device host --quiet -o {frames}",
+            before=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000)),
+        )
+        self.assertEqual(status, 3, text)
+        self.assertIn("writing failed (File too large)", errors[0])
+        self.assertEqual(list(self.work.glob("full.frames*.partial")), [], "it takes room on a full disk")
+
     def test_a_dump_at_its_limit_keeps_the_table(self):
         dump = self.work / "pairs.csv"
         status, text, errors = run(
