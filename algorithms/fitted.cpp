@@ -147,6 +147,8 @@ Settings Traversal::fitted(const Settings& asked, const DeviceInfo& info, const 
     if (settings[tandem::parameters::broad] == Broad::device && is_published(settings))
         throw InputError("setting broad=device does not go with residency=published, whose bounds are on the "
                          "host; choose broad=sphere");
+    // Only the host device and the conversion of the published data path have threads.
+    if (info.max_group_size > 1 && !is_published(settings)) fitting.set(tandem::parameters::threads(0));
     check_output(settings);
     if (settings[tandem::parameters::order] == AnswerOrder::canonical) {
         if (!has_pairs(settings[tandem::parameters::output]))

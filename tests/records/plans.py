@@ -138,18 +138,30 @@ class Plans(PlanCase):
     def test_cells_that_differ_only_in_what_has_no_effect(self):
         """They are one cell: records with equal keys would contradict each other."""
         records = self.work / "equal.jsonl"
-        given = "plates --frames 20 --device host --algorithm tiled --no-check --no-count"
-        for setting, kept in (
-            ("group_size=32,64", "group_size=32"),
-            ("slabs=touched,usual", "slabs=touched"),
+        given = "plates --frames 20 --algorithm tiled --no-check --no-count"
+        for device, setting, kept in (
+            ("host", "group_size=32,64", "group_size=32"),
+            ("host", "slabs=touched,usual", "slabs=touched"),
+            ("opencl:0", "threads=1,2", "threads=1"),
         ):
             with self.subTest(setting):
-                words = ("--set", setting, "--repeat", 1, "--truth", "none", "--out", records)
+                words = (
+                    "--device",
+                    device,
+                    "--set",
+                    setting,
+                    "--repeat",
+                    1,
+                    "--truth",
+                    "none",
+                    "--out",
+                    records,
+                )
                 status, out, errors = tandem(f"run {given}", *words)
                 self.assertEqual(status, 0, errors)
                 self.assertEqual(len(errors), 1, errors)
                 self.assertRegex(
-                    errors[0], f"^tandem: skipped a cell: .+ on host has the settings of tiled {kept}"
+                    errors[0], f"^tandem: skipped a cell: .+ on {device} has the settings of tiled {kept}"
                 )
                 self.assertEqual(len(records.read_text().splitlines()), 1)
                 records.unlink()
