@@ -26,7 +26,9 @@ std::vector<Pair> pairs_within(const Scene& scene, const Frame& frame, double ma
         for (std::uint32_t b = a + 1; b < all.size(); ++b)
             for (std::uint32_t i = 0; i < all[a].size(); ++i)
                 for (std::uint32_t j = 0; j < all[b].size(); ++j)
-                    if (distance_between(all[a][i], all[b][j]) <= margin) pairs.push_back({a, i, b, j});
+                    if (!are_beyond(all[a][i], all[b][j], margin)
+                        && distance_between(all[a][i], all[b][j]) <= margin)
+                        pairs.push_back({a, i, b, j});
     return pairs;
 }
 

@@ -63,6 +63,21 @@ Real distance_between(const FourCornersOf<Real>& a, const FourCornersOf<Real>& b
     return least;
 }
 
+/// Whether two are farther apart than a limit along an axis, and so in space; most pairs of a scene are.
+inline bool are_beyond(const FourCorners& a, const FourCorners& b, double limit) {
+    for (int axis = 0; axis < 3; ++axis) {
+        double low_a = a[0][axis], high_a = low_a, low_b = b[0][axis], high_b = low_b;
+        for (std::size_t i = 1; i < 4; ++i) {
+            low_a = std::min(low_a, a[i][axis]);
+            high_a = std::max(high_a, a[i][axis]);
+            low_b = std::min(low_b, b[i][axis]);
+            high_b = std::max(high_b, b[i][axis]);
+        }
+        if (low_a - high_b > limit || low_b - high_a > limit) return true;
+    }
+    return false;
+}
+
 /// The corners of a tetrahedron of a body, as the scene has them.
 inline FourCorners corners_of(const Scene& scene, const Frame& frame, std::uint32_t body,
                               std::uint32_t number) {
