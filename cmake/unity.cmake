@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# tandem_unity(TARGET [EXPRESSION...]): compiles files together, which takes a fifth of the time: headers and templates
-# of each unit cost as much as its code. Files whose path matches EXPRESSION form a unit, the last one that matches; the
+# tandem_unity(TARGET [EXPRESSION...]): compiles files together, because headers and templates of each unit cost about as
+# much as its code. Files whose path matches EXPRESSION form a unit, the last one that matches; the
 # path is relative to the root and without .cpp. Other files form a unit per folder.
 # Files of one unit share one unnamed namespace. Where names clash, rename one, or give its file an EXPRESSION.
 function(tandem_unity target)
